@@ -153,21 +153,21 @@ def wxyz_level_from_gravity(accel_m_s2: Vector3) -> Wxyz:
     return multiply(wxyz_pitch, (cos(0.5 * roll), sin(0.5 * roll), 0.0, 0.0))
 
 
-def wxyz_from_euler(euler_rad: Vector3) -> Wxyz:
-    """Return the attitude of the paper's angles (R_x, R_y, R_z): R = Rx Ry Rz, as eq. 1 is printed."""
-    (cx, sx), (cy, sy), (cz, sz) = ((cos(0.5 * angle), sin(0.5 * angle)) for angle in euler_rad)
-    return multiply(multiply((cx, sx, 0.0, 0.0), (cy, 0.0, sy, 0.0)), (cz, 0.0, 0.0, sz))
+def wxyz_from_rpy(rpy_rad: Vector3) -> Wxyz:
+    """Return the attitude of roll, pitch and yaw: R = Rz(yaw) Ry(pitch) Rx(roll)."""
+    (cr, sr), (cp, sp), (cy, sy) = ((cos(0.5 * angle), sin(0.5 * angle)) for angle in rpy_rad)
+    return multiply(multiply((cy, 0.0, 0.0, sy), (cp, 0.0, sp, 0.0)), (cr, sr, 0.0, 0.0))
 
 
-def euler_from_wxyz(wxyz: Wxyz) -> Vector3:
-    """Return the paper's angles (R_x, R_y, R_z) with R_y in [-pi/2, pi/2] (eq. 1: R = Rx Ry Rz).
+def rpy_from_wxyz(wxyz: Wxyz) -> Vector3:
+    """Return roll, pitch in [-pi/2, pi/2] and yaw, radians: R = Rz(yaw) Ry(pitch) Rx(roll).
 
-    At R_y = ±pi/2 only the sum or difference of the others is determined, and R_x is given as 0.
+    Looking straight up or down only the sum or difference of roll and yaw is determined, and roll is given as 0.
     """
     w, x, y, z = wxyz
-    sine_y = 2.0 * (x * z + w * y)
-    if abs(sine_y) > 1.0 - 1e-12:
-        return 0.0, copysign(0.5 * pi, sine_y), 2.0 * atan2(z, w)
-    R_x = atan2(-2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y))
-    R_z = atan2(-2.0 * (x * y - w * z), 1.0 - 2.0 * (y * y + z * z))
-    return R_x, asin(sine_y), R_z
+    sine_pitch = 2.0 * (w * y - x * z)
+    if abs(sine_pitch) > 1.0 - 1e-12:
+        return 0.0, copysign(0.5 * pi, sine_pitch), wrap_rad(2.0 * atan2(z, w))
+    roll = atan2(2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y))
+    yaw = atan2(2.0 * (x * y + w * z), 1.0 - 2.0 * (y * y + z * z))
+    return roll, asin(sine_pitch), yaw

@@ -1,0 +1,58 @@
+"""Offsets at rest and the mean of four."""
+
+import numpy as np
+import pytest
+
+from tracker.calibration import RestCalibration, SampleMean
+from tracker.measurements import ImuSample
+
+
+def sample(t_s: float, gyro: tuple[float, float, float], accel: tuple[float, float, float] = (0, 0, 9.81)) -> ImuSample:
+    t_ns = round(t_s * 1e9)
+    return ImuSample(t_ns, t_ns, gyro, accel)
+
+
+def test_offset_is_the_mean_at_rest_and_stays_when_the_rig_moves() -> None:
+    rng = np.random.default_rng(1)
+    calibration = RestCalibration()
+    for k in range(2500):
+        x, y, z = (float(v) for v in rng.normal((0.004, -0.002, 0.001), 0.002))
+        calibration.step(sample(k * 0.004, (x, y, z)))
+    assert calibration.gyro_offset_rad_s == pytest.approx((0.004, -0.002, 0.001), abs=2e-4)
+    for k in range(2500, 5000):
+        calibration.step(sample(k * 0.004, (0.0, 0.0, 1.0)))
+    assert calibration.finished
+    assert calibration.gyro_offset_rad_s == pytest.approx((0.004, -0.002, 0.001), abs=2e-4)
+
+
+def test_five_thousand_samples_are_enough() -> None:
+    calibration = RestCalibration()
+    for k in range(6000):
+        calibration.step(sample(k * 0.004, (0.001, 0.0, 0.0)))
+    assert calibration.finished
+    assert 5000 <= calibration.samples < 5200
+
+
+def test_a_turning_rig_gives_no_offset() -> None:
+    calibration = RestCalibration()
+    for k in range(1000):
+        calibration.step(sample(k * 0.004, (0.0, 0.0, 0.5)))
+    assert calibration.samples == 0
+    assert calibration.gyro_offset_rad_s == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(("rate_hz", "group"), [(250.0, 4), (100.0, 1), (200.0, 3), (16.0, 1)])
+def test_groups_span_at_most_16_ms(rate_hz: float, group: int) -> None:
+    mean = SampleMean()
+    groups = [m for k in range(101) if (m := mean.step(sample(k / rate_hz, (float(k), 0.0, 0.0)))) is not None]
+    assert groups[0].dt_s == 0.0
+    assert [m.dt_s for m in groups[1:]] == pytest.approx([group / rate_hz] * (100 // group))
+    assert groups[1].gyro_rad_s[0] == pytest.approx((1 + group) / 2)
+
+
+def test_a_gap_is_not_integrated_over() -> None:
+    mean = SampleMean()
+    mean.step(sample(0.0, (0.0, 0.0, 0.0)))
+    after = mean.step(sample(5.0, (1.0, 0.0, 0.0)))
+    assert after is not None
+    assert after.dt_s == 0.25

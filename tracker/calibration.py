@@ -1,0 +1,115 @@
+"""What the paper does to raw inertial samples: offsets found at rest, and the mean of a few samples.
+
+Its table of offsets subtracts the accelerometer's mean at rest too. That mean contains gravity and the tilt of the table it
+lay on, so subtracting it is right for no other attitude; here only the gyroscope's offset is removed (research finding 2b).
+"""
+
+from dataclasses import dataclass
+from math import sqrt
+
+from tracker.measurements import ImuSample, Vector3
+
+#: The paper's number of samples ("~5000, which takes around 30 seconds").
+REST_SAMPLES = 5000
+#: A block of samples is at rest when no axis of the gyro spreads wider than this, rad/s: a standing person sways by 0.02.
+REST_GYRO_STD_RAD_S = 0.04
+#: ... and its mean is no faster than this: larger than any offset, smaller than any turn of the head. The paper's are 0.2 deg/s.
+REST_GYRO_MEAN_RAD_S = 0.03
+#: ... and the length of the specific force spreads no wider than this, m/s2: a step shows 1 to 3.
+REST_ACCEL_STD_M_S2 = 0.25
+REST_BLOCK_S = 0.5
+
+
+class RestCalibration:
+    """The gyroscope's offset from the rest at the start of a walk.
+
+    Samples are judged in blocks of half a second. Blocks at rest are averaged until 5000 samples are in or the rig moves;
+    then the offset stands for good, as in the paper. A walk that starts in motion has offset zero until a first rest.
+    """
+
+    def __init__(self) -> None:
+        self.gyro_offset_rad_s: Vector3 = (0.0, 0.0, 0.0)
+        self.samples = 0
+        """How many samples the offset rests on."""
+        self.finished = False
+        self._block: list[ImuSample] = []
+
+    def step(self, sample: ImuSample) -> None:
+        """Take one raw sample."""
+        if self.finished:
+            return
+        self._block.append(sample)
+        if sample.t_ns - self._block[0].t_ns < REST_BLOCK_S * 1e9:
+            return
+        block, self._block = self._block, []
+        if not _at_rest(block):
+            self.finished = self.samples > 0
+            return
+        total = self.samples + len(block)
+        old = self.gyro_offset_rad_s
+        sums = [sum(s.gyro_rad_s[axis] for s in block) for axis in range(3)]
+        x, y, z = ((old[axis] * self.samples + sums[axis]) / total for axis in range(3))
+        self.gyro_offset_rad_s, self.samples = (x, y, z), total
+        self.finished = total >= REST_SAMPLES
+
+
+def _at_rest(block: list[ImuSample]) -> bool:
+    for axis in range(3):
+        mean, std = _mean_std([sample.gyro_rad_s[axis] for sample in block])
+        if std > REST_GYRO_STD_RAD_S or abs(mean) > REST_GYRO_MEAN_RAD_S:
+            return False
+    norms = [sqrt(ax * ax + ay * ay + az * az) for ax, ay, az in (sample.accel_m_s2 for sample in block)]
+    return _mean_std(norms)[1] <= REST_ACCEL_STD_M_S2
+
+
+def _mean_std(values: list[float]) -> tuple[float, float]:
+    mean = sum(values) / len(values)
+    return mean, sqrt(sum((value - mean) ** 2 for value in values) / len(values))
+
+
+@dataclass(frozen=True, slots=True)
+class MeanSample:
+    """The mean of a few inertial samples, valid over the `dt_s` that end at `t_ns`."""
+
+    t_ns: int
+    dt_s: float
+    gyro_rad_s: Vector3
+    accel_m_s2: Vector3
+
+
+#: The paper's four samples, and the time they span at its 250 Hz. A slower IMU averages fewer: four samples of a phone's
+#: 16 Hz would blur a quarter of a second.
+MEAN_SAMPLES = 4
+MEAN_SPAN_S = 0.016
+#: A longer silence than this is a gap: nothing is known of the motion inside it.
+LONGEST_STEP_S = 0.25
+
+
+class SampleMean:
+    """Groups samples by up to four, within 16 ms, into their mean."""
+
+    def __init__(self) -> None:
+        self._t_last_ns: int | None = None
+        self._group: list[ImuSample] = []
+
+    def step(self, sample: ImuSample) -> MeanSample | None:
+        """Take one sample in order of stamps; return a mean when a group is full."""
+        if self._t_last_ns is None:
+            self._t_last_ns = sample.t_ns
+            return MeanSample(sample.t_ns, 0.0, sample.gyro_rad_s, sample.accel_m_s2)
+        group = self._group
+        group.append(sample)
+        span_s = (sample.t_ns - self._t_last_ns) * 1e-9
+        # the span that one sample more would give
+        if len(group) < MEAN_SAMPLES and span_s * (len(group) + 1) / len(group) <= MEAN_SPAN_S * 1.05:
+            return None
+        n = len(group)
+        gyros, accels = [s.gyro_rad_s for s in group], [s.accel_m_s2 for s in group]
+        mean = MeanSample(
+            sample.t_ns,
+            min(span_s, LONGEST_STEP_S),
+            (sum(g[0] for g in gyros) / n, sum(g[1] for g in gyros) / n, sum(g[2] for g in gyros) / n),
+            (sum(a[0] for a in accels) / n, sum(a[1] for a in accels) / n, sum(a[2] for a in accels) / n),
+        )
+        self._t_last_ns, self._group = sample.t_ns, []
+        return mean
