@@ -1,0 +1,108 @@
+"""The estimators by name: how each is built, and which sensors it cannot do without."""
+
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from tracker.errors import UnknownEstimator
+from tracker.estimator import Estimator, Origin
+from tracker.geodesy import SiteFrame
+from tracker.motion import ConstantMotion, FuzzyMotion, MotionSelector
+from tracker.paper import PaperEstimator, PaperSettings
+from tracker.rig import Rig
+from tracker.truth import TruthEstimator
+
+SELECTORS: dict[str, type[MotionSelector]] = {"cmm": ConstantMotion, "famm": FuzzyMotion}
+
+ESTIMATORS: tuple[str, ...] = (
+    "gps-imu/cmm",
+    "gps-imu/famm",
+    "camera-gps-imu/cmm",
+    "camera-gps-imu/famm",
+    "truth",
+)
+DEFAULT_ESTIMATOR = "camera-gps-imu/famm"
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Settings of every estimator."""
+
+    paper: PaperSettings = field(default_factory=PaperSettings)
+
+
+class Contents(Protocol):
+    """What must be known of a log or a rig to say which estimators it can feed."""
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Messages by sensor."""
+        ...
+
+    @property
+    def has_truth(self) -> bool:
+        """Whether there is ground truth."""
+        ...
+
+
+def build(
+    name: str,
+    *,
+    origin: Origin,
+    rig: Rig,
+    declination_rad: float,
+    truth_origin: Origin | None = None,
+    settings: Settings | None = None,
+) -> Estimator:
+    """Return a new estimator.
+
+    Args:
+        name: One of `ESTIMATORS`.
+        origin: Where the site frame is laid; all poses are in it.
+        rig: Extrinsics and camera.
+        declination_rad: East of true north, for the magnetometer.
+        truth_origin: Where the log's map frame is laid; None where it is the site's.
+        settings: None for the defaults.
+
+    Raises:
+        UnknownEstimator: No estimator has that name.
+    """
+    check_name(name)
+    if name == "truth":
+        return TruthEstimator(SiteFrame(origin).T_from(truth_origin) if truth_origin else np.eye(4))
+    sensors, selector = name.rsplit("/", 1)
+    return PaperEstimator(
+        name,
+        SELECTORS[selector](),
+        origin=origin,
+        rig=rig,
+        declination_rad=declination_rad,
+        uses_camera=sensors.startswith("camera"),
+        settings=(settings or Settings()).paper,
+    )
+
+
+def check_name(name: str) -> None:
+    """Raise `UnknownEstimator` unless an estimator has that name."""
+    if name not in ESTIMATORS:
+        raise UnknownEstimator(f"There is no estimator {name!r}: choose one of {', '.join(ESTIMATORS)}.")
+
+
+def missing_sensors(name: str, contents: Contents, rig: Rig) -> str | None:
+    """Return in words what an estimator lacks, or None where it can run."""
+    check_name(name)
+    if name == "truth":
+        return None if contents.has_truth else "no ground truth"
+    counts = contents.counts
+    missing = [
+        words
+        for words, is_there in (
+            ("no IMU", counts.get("imu", 0) > 0),
+            ("no GPS", counts.get("gps", 0) > 0),
+            ("no camera", not name.startswith("camera") or counts.get("frames", 0) > 0),
+            ("no camera calibration", not name.startswith("camera") or not counts.get("frames", 0) or rig.camera),
+        )
+        if not is_there
+    ]
+    return ", ".join(missing) or None

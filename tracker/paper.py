@@ -1,0 +1,403 @@
+"""The paper's tracker: measurements m_P and m_R of three sensors into the 12-state filter, four times a second.
+
+Bostanci et al., Sensor fusion of camera, GPS and IMU using fuzzy adaptive multiple motion models, arXiv 1512.02766.
+Where the text is silent or its literal equation breaks, this takes the readings `keyframe_local` and `sane`:
+
+- m_R is Madgwick's attitude turned to north once at the start.
+- m_P is the last fix, carried on by the camera's motion since the keyframe nearest that fix (camera), and by the doubly
+  integrated specific force since then (what the camera has not covered, or everything without one).
+- The essential matrix gives no length, so the camera's step is as long as the filter's speed makes it.
+"""
+
+from collections import deque
+from copy import deepcopy
+from dataclasses import dataclass, field
+from math import hypot, isfinite, pi, sqrt
+
+import numpy as np
+
+from tracker.attitude import Madgwick
+from tracker.calibration import MeanSample, RestCalibration, SampleMean
+from tracker.estimator import Innovation, Origin, Pose, Snapshot
+from tracker.fusion import FusionFilter, FusionSettings
+from tracker.geodesy import SiteFrame, gravity_m_s2
+from tracker.geometry import (
+    conjugate,
+    matrix_from_wxyz,
+    multiply,
+    normalise,
+    rpy_from_wxyz,
+    wrap_rad,
+    wxyz_from_rpy,
+    wxyz_from_yaw,
+)
+from tracker.heading import StartHeading
+from tracker.inertial import InertialPath
+from tracker.measurements import (
+    CompassHeading,
+    GpsFix,
+    ImuSample,
+    MagSample,
+    Matrix,
+    Measurement,
+    Outcome,
+    Vector3,
+    VisualMotion,
+    Wxyz,
+)
+from tracker.motion import MotionSelector
+from tracker.rig import Rig
+from tracker.transformation import transformation
+
+
+@dataclass(frozen=True)
+class PaperSettings:
+    """What the paper leaves open beyond the filter's noise."""
+
+    fusion: FusionSettings = field(default_factory=FusionSettings)
+    cycle_s: float = 0.25
+    """Its camera's four keyframes a second."""
+    gps_var_m2: Vector3 = (2.12**2, 2.12**2, 4.0**2)
+    """For a receiver that states none: 2.5 m CEP."""
+    gps_floor_m: float = 1.0
+    """A receiver that states less is not believed."""
+    tilt_sigma_rad: float = 0.017
+    heading_sigma_rad: float = 0.09
+    """What Madgwick's filter and the start heading are good for; the filter's own R only holds their noise."""
+    fastest_walk_m_s: float = 2.0
+    outage_speed_m_s: float = 0.5
+    """An old fix is off by this much more for every second of its age."""
+    impossible_speed_m_s: float = 40.0
+    """A fix that needs more, beyond 50 m, is an outlier; five in a row are believed."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Fix:
+    t_ns: int
+    p_site_m: Vector3
+    var_m2: Vector3
+
+
+@dataclass(frozen=True, slots=True)
+class _Sight:
+    """A picture on the camera's own path: where it was by the chain of keyframes, and how it looked (site from camera)."""
+
+    t_ns: int
+    p_m: Vector3
+    R_site_cam: Matrix
+
+
+_OUTLIERS_BELIEVED = 5
+_SIGHTS = 64
+_FASTEST_CLOCK_NS = 2_000_000_000
+
+
+class PaperEstimator:
+    """GPS-IMU or camera-GPS-IMU, with a constant or a fuzzy motion model: the paper's four columns."""
+
+    def __init__(
+        self,
+        name: str,
+        selector: MotionSelector,
+        *,
+        origin: Origin,
+        rig: Rig,
+        declination_rad: float,
+        uses_camera: bool,
+        settings: PaperSettings | None = None,
+    ) -> None:
+        self._name = name
+        self._uses_camera = uses_camera
+        self._selector = selector
+        self._settings = settings or PaperSettings()
+        self._site = SiteFrame(origin)
+        self._R_body_cam = rig.T_body_cam[:3, :3]
+        self._state = _State(gravity_m_s2(origin.lat_deg, origin.h_ellipsoid_m), declination_rad, selector)
+
+    @property
+    def name(self) -> str:
+        """For instance `camera-gps-imu/famm`."""
+        return self._name
+
+    @property
+    def uses_camera(self) -> bool:
+        """Whether it wants `VisualMotion`."""
+        return self._uses_camera
+
+    def step(self, measurement: Measurement) -> Outcome:
+        """Take one measurement in order of arrival."""
+        match measurement:
+            case ImuSample():
+                return self._step_imu(measurement)
+            case GpsFix():
+                return self._step_fix(measurement)
+            case VisualMotion() if self._uses_camera:
+                return self._step_vision(measurement)
+            case MagSample() | CompassHeading():
+                return self._step_heading(measurement)
+            case _:
+                return Outcome.IGNORED
+
+    # -- inertial -----------------------------------------------------------------------------------------------------
+
+    def _step_imu(self, sample: ImuSample) -> Outcome:
+        s = self._state
+        if not all(map(isfinite, (*sample.gyro_rad_s, *sample.accel_m_s2))):
+            return Outcome.REJECTED_NOT_FINITE
+        if s.imu_ns is not None:
+            if sample.t_ns <= s.imu_ns:
+                return Outcome.REJECTED_STALE
+            if sample.t_ns - s.imu_ns > sample.t_recv_ns - s.imu_recv_ns + _FASTEST_CLOCK_NS:
+                return Outcome.REJECTED_GATE
+        s.imu_ns, s.imu_recv_ns = sample.t_ns, sample.t_recv_ns
+        s.calibration.step(sample)
+        mean = s.sample_mean.step(sample)
+        if mean is not None:
+            self._integrate(mean)
+        return Outcome.USED if s.filter is not None else Outcome.WAITING
+
+    def _integrate(self, mean: MeanSample) -> None:
+        s = self._state
+        bias = s.calibration.gyro_offset_rad_s
+        (gx, gy, gz), (bx, by, bz) = mean.gyro_rad_s, bias
+        gyro = (gx - bx, gy - by, gz - bz)
+        if s.attitude.wxyz_level_body is None and hypot(*mean.accel_m_s2) < 1.0:
+            return  # a rig in free fall has no up
+        q = s.attitude.update(gyro, mean.accel_m_s2, mean.dt_s)
+        s.path.step(MeanSample(mean.t_ns, mean.dt_s, gyro, mean.accel_m_s2), q, s.heading.yaw_offset_rad)
+        if s.filter is None:
+            self._start(mean.t_ns)
+        elif mean.t_ns - s.cycle_ns >= self._settings.cycle_s * 1e9 - 1e6:
+            self._cycle(mean.t_ns)
+
+    # -- the filter's cycle -------------------------------------------------------------------------------------------
+
+    def _start(self, t_ns: int) -> None:
+        s = self._state
+        if s.fix is None:
+            return
+        s.filter = FusionFilter.start(
+            self._settings.fusion, self._measured_position(t_ns)[0], self._measured_rotation(t_ns), s.fix.var_m2
+        )
+        s.cycle_ns = t_ns
+        s.filter_yaw_offset_rad = s.heading.yaw_offset_rad
+
+    def _cycle(self, t_ns: int) -> None:
+        """Predict, measure, update, and choose the next motion model."""
+        s = self._state
+        if s.filter is None:
+            return
+        self._turn_to_north(s.filter)
+        s.filter.predict((t_ns - s.cycle_ns) * 1e-9, s.model)
+        m_P, var_P = self._measured_position(t_ns)
+        y_p, y_r = s.filter.innovation(m_P, self._measured_rotation(t_ns))
+        s.filter.update(y_p, y_r, var_P)
+        if y_p is not None:
+            s.innovations.append(Innovation(t_ns, y_p, y_r, str(s.model)))
+            s.model = self._selector.following(hypot(*y_p), hypot(*y_r), s.model)
+        s.cycle_ns = t_ns
+        if s.fix_is_new:
+            s.path.reset_velocity(s.filter.velocity_m_s)
+            s.fix_is_new = False
+
+    def _turn_to_north(self, filter_: FusionFilter) -> None:
+        """When north becomes known the whole past was turned by a constant: that is no innovation."""
+        s = self._state
+        if s.heading.yaw_offset_rad is not None and s.filter_yaw_offset_rad is None:
+            filter_.value[5] = wrap_rad(filter_.value[5] + s.heading.yaw_offset_rad)
+            s.filter_yaw_offset_rad = s.heading.yaw_offset_rad
+
+    def _measured_rotation(self, t_ns: int) -> Vector3:
+        """m_R: roll, pitch, yaw of Madgwick's attitude in site."""
+        q = self._dead_reckoned_attitude(t_ns)
+        return rpy_from_wxyz(q)
+
+    def _dead_reckoned_attitude(self, t_ns: int) -> Wxyz:
+        s = self._state
+        state = s.path.at(t_ns)
+        q = state.wxyz_level_body if state else (1.0, 0.0, 0.0, 0.0)
+        return multiply(wxyz_from_yaw(s.heading.yaw_offset_rad or 0.0), q)
+
+    def _measured_position(self, t_ns: int) -> tuple[Vector3, Vector3]:
+        """m_P and its variance: the fix, carried on to t_ns (`keyframe_local`: p_gps plus the camera's displacement)."""
+        s = self._state
+        if s.fix is None:
+            raise RuntimeError("a cycle needs a fix")
+        moved = (0.0, 0.0, 0.0)
+        since_ns = s.fix.t_ns
+        if s.sights and s.sights[-1].t_ns > since_ns:
+            nearest = min(s.sights, key=lambda sight: abs(sight.t_ns - since_ns))
+            last = s.sights[-1]
+            if last is not nearest:
+                moved = _difference(last.p_m, nearest.p_m)
+                since_ns = last.t_ns
+        inertial = s.path.displacement_m(since_ns, t_ns)
+        x, y, z = (p + m + i for p, m, i in zip(s.fix.p_site_m, moved, inertial, strict=True))
+        age_s = max(0.0, (t_ns - s.fix.t_ns) * 1e-9 - 1.0)
+        more = (self._settings.outage_speed_m_s * age_s) ** 2
+        vx, vy, vz = s.fix.var_m2
+        return (x, y, z), (vx + more, vy + more, vz + more)
+
+    # -- GPS ----------------------------------------------------------------------------------------------------------
+
+    def _step_fix(self, fix: GpsFix) -> Outcome:
+        s = self._state
+        if not fix.valid:
+            return Outcome.REJECTED_WEAK
+        if not all(map(isfinite, (fix.lat_deg, fix.lon_deg, fix.h_ellipsoid_m))) or abs(fix.lat_deg) > 90.0:
+            return Outcome.REJECTED_NOT_FINITE
+        p = self._site.site_from_geodetic(fix.lat_deg, fix.lon_deg, fix.h_ellipsoid_m)
+        old = s.fix
+        if old is not None:
+            if fix.t_ns <= old.t_ns:
+                return Outcome.REJECTED_STALE
+            dt_s, moved = (fix.t_ns - old.t_ns) * 1e-9, _difference(p, old.p_site_m)
+            if hypot(*moved) > 50.0 + self._settings.impossible_speed_m_s * dt_s and s.outliers < _OUTLIERS_BELIEVED:
+                s.outliers += 1
+                return Outcome.REJECTED_GATE
+            if s.outliers == _OUTLIERS_BELIEVED and s.filter is not None:
+                s.filter.value[:3] = p
+            self._course(fix.t_ns, dt_s, moved)
+        s.outliers = 0
+        s.fix, s.fix_is_new = _Fix(fix.t_ns, p, self._variance(fix)), True
+        return Outcome.USED
+
+    def _variance(self, fix: GpsFix) -> Vector3:
+        stated = (fix.cov_enu_m2[0], fix.cov_enu_m2[4], fix.cov_enu_m2[8]) if len(fix.cov_enu_m2) == 9 else (0.0,) * 3
+        floor = self._settings.gps_floor_m**2
+        x, y, z = (
+            max(v, floor) if isfinite(v) and v > 0.0 else default
+            for v, default in zip(stated, self._settings.gps_var_m2, strict=True)
+        )
+        return x, y, z
+
+    def _course(self, t_ns: int, dt_s: float, moved_m: Vector3) -> None:
+        s = self._state
+        if s.heading.yaw_offset_rad is not None or dt_s > 3.0:
+            return
+        middle = s.path.at(t_ns - int(0.5e9 * dt_s))
+        if middle is not None:
+            vx, vy, vz = (d / dt_s for d in moved_m)
+            s.heading.course((vx, vy, vz), middle.wxyz_level_body)
+
+    # -- heading and camera -------------------------------------------------------------------------------------------
+
+    def _step_heading(self, measurement: MagSample | CompassHeading) -> Outcome:
+        s = self._state
+        if s.heading.yaw_offset_rad is not None:
+            return Outcome.IGNORED  # the paper: once at the start, then six axes
+        state = s.path.at(measurement.t_ns)
+        if state is None:
+            return Outcome.WAITING
+        if isinstance(measurement, CompassHeading):
+            if not isfinite(measurement.yaw_rad):
+                return Outcome.REJECTED_NOT_FINITE
+            s.heading.compass(measurement.t_ns, measurement.yaw_rad, state.wxyz_level_body)
+            return Outcome.USED
+        if not all(map(isfinite, measurement.field_body_t)):
+            return Outcome.REJECTED_NOT_FINITE
+        s.heading.magnetometer(measurement.t_ns, measurement.field_body_t, state.wxyz_level_body)
+        return Outcome.USED
+
+    def _step_vision(self, motion: VisualMotion) -> Outcome:
+        """Chain the camera's path: each picture stands off its keyframe by Tr, its translation as long as the filter's speed."""
+        s = self._state
+        if s.filter is None or s.heading.yaw_offset_rad is None:
+            return Outcome.WAITING
+        if s.sights and motion.t_ns <= s.sights[-1].t_ns:
+            return Outcome.REJECTED_STALE
+        key = next((sight for sight in reversed(s.sights) if sight.t_ns == motion.t_key_ns), None)
+        if key is None:
+            key = self._sight(motion.t_key_ns)
+        speed = min(hypot(*s.filter.velocity_m_s[:2]), self._settings.fastest_walk_m_s)
+        length = speed * (motion.t_ns - motion.t_key_ns) * 1e-9
+        dx, dy, dz = motion.direction_key
+        Tr = transformation(motion.R_key_cam, (dx * length, dy * length, dz * length))
+        x, y, z = (float(v) for v in key.R_site_cam @ Tr[:3, 3])
+        here = self._sight(motion.t_ns)
+        s.sights.append(
+            _Sight(motion.t_ns, (key.p_m[0] + x, key.p_m[1] + y, key.p_m[2] + z), here.R_site_cam),
+        )
+        return Outcome.USED
+
+    def _sight(self, t_ns: int) -> _Sight:
+        """Put a picture that nothing is chained to at the end of the camera's path, carried on by the IMU."""
+        s = self._state
+        R = matrix_from_wxyz(self._dead_reckoned_attitude(t_ns)) @ self._R_body_cam
+        if not s.sights:
+            return _Sight(t_ns, (0.0, 0.0, 0.0), R)
+        last = s.sights[-1]
+        x, y, z = (p + d for p, d in zip(last.p_m, s.path.displacement_m(last.t_ns, t_ns), strict=True))
+        return _Sight(t_ns, (x, y, z), R)
+
+    # -- answers ------------------------------------------------------------------------------------------------------
+
+    def predict(self, t_ns: int) -> Pose | None:
+        """Return the pose at t_ns: the last filtered one, moved by the inertial path between its cycle and t_ns."""
+        s = self._state
+        if s.filter is None:
+            return None
+        then, cycle = s.path.at(t_ns), s.path.at(s.cycle_ns)
+        if then is None or cycle is None:
+            return None
+        x, y, z = (p + a - b for p, a, b in zip(s.filter.position_m, then.p_m, cycle.p_m, strict=True))
+        turned = multiply(conjugate(cycle.wxyz_level_body), then.wxyz_level_body)
+        q = multiply(wxyz_from_rpy(s.filter.rpy_rad), turned)
+        yaw_rad = s.heading.yaw_offset_rad
+        if yaw_rad is not None and s.filter_yaw_offset_rad is None:
+            q = multiply(wxyz_from_yaw(yaw_rad), q)
+        return Pose(
+            t_ns, (x, y, z), normalise(q), then.v_m_s, self._covariance(t_ns), str(s.model), yaw_rad is not None
+        )
+
+    def _covariance(self, t_ns: int) -> Matrix:
+        """What a reader should believe. The filter takes GPS errors for white, but they last for minutes, and so does the
+        error of the start heading: what averaging cannot remove is added back."""
+        s, settings = self._state, self._settings
+        if s.filter is None or s.fix is None:
+            raise RuntimeError("no pose yet")
+        age_s = max(0.0, (t_ns - s.fix.t_ns) * 1e-9 - 1.0)
+        drift = (settings.outage_speed_m_s * age_s) ** 2
+        heading = settings.heading_sigma_rad if s.heading.yaw_offset_rad is not None else pi / sqrt(3.0)
+        rotation = (settings.tilt_sigma_rad**2, settings.tilt_sigma_rad**2, heading**2)
+        position = (v + fix + drift for v, fix in zip(s.filter.var_value[:3], s.fix.var_m2, strict=True))
+        return np.diag([*position, *(r + v for r, v in zip(rotation, s.filter.var_value[3:], strict=True))])
+
+    def innovations(self) -> list[Innovation]:
+        """Return the updates since the last call and forget them."""
+        innovations, self._state.innovations = self._state.innovations, []
+        return innovations
+
+    def snapshot(self) -> Snapshot:
+        """Return the whole state."""
+        return deepcopy(self._state)
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Become what the snapshot was taken of."""
+        self._state = deepcopy(snapshot)
+
+
+class _State:
+    """All that changes."""
+
+    def __init__(self, gravity: float, declination_rad: float, selector: MotionSelector) -> None:
+        self.calibration = RestCalibration()
+        self.sample_mean = SampleMean()
+        self.attitude = Madgwick()
+        self.heading = StartHeading(declination_rad)
+        self.path = InertialPath(gravity)
+        self.filter: FusionFilter | None = None
+        self.filter_yaw_offset_rad: float | None = None
+        self.model = selector.first
+        self.cycle_ns = 0
+        self.imu_ns: int | None = None
+        self.imu_recv_ns = 0
+        self.fix: _Fix | None = None
+        self.fix_is_new = False
+        self.outliers = 0
+        self.sights: deque[_Sight] = deque(maxlen=_SIGHTS)
+        self.innovations: list[Innovation] = []
+
+
+def _difference(a: Vector3, b: Vector3) -> Vector3:
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
