@@ -14,9 +14,9 @@ from tracker.measurements import Vector3, Wxyz
 SPAN_S = 2.0
 #: A course says where the walker faces only while walking; below this speed it is the receiver's noise.
 WALKING_M_S = 0.7
-#: Courses that must agree, and how closely (the length of their mean direction; 0.9 is a spread of about 25 degrees).
-COURSES = 4
-AGREEMENT = 0.9
+#: Courses that must agree, and how closely (the length of their mean direction; 0.95 is a spread of about 18 degrees).
+COURSES = 6
+AGREEMENT = 0.95
 
 
 class StartHeading:

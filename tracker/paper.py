@@ -251,15 +251,18 @@ class PaperEstimator:
         if old is not None:
             if fix.t_ns <= old.t_ns:
                 return Outcome.REJECTED_STALE
-            dt_s, moved = (fix.t_ns - old.t_ns) * 1e-9, _difference(p, old.p_site_m)
-            if hypot(*moved) > 50.0 + self._settings.impossible_speed_m_s * dt_s and s.outliers < _OUTLIERS_BELIEVED:
+            dt_s = (fix.t_ns - old.t_ns) * 1e-9
+            if (
+                hypot(*_difference(p, old.p_site_m)) > 50.0 + self._settings.impossible_speed_m_s * dt_s
+                and s.outliers < _OUTLIERS_BELIEVED
+            ):
                 s.outliers += 1
                 return Outcome.REJECTED_GATE
             if s.outliers == _OUTLIERS_BELIEVED and s.filter is not None:
                 s.filter.value[:3] = p
-            self._course(fix.t_ns, dt_s, moved)
         s.outliers = 0
         s.fix, s.fix_is_new = _Fix(fix.t_ns, p, self._variance(fix)), True
+        self._course(s.fix)
         return Outcome.USED
 
     def _variance(self, fix: GpsFix) -> Vector3:
@@ -271,13 +274,17 @@ class PaperEstimator:
         )
         return x, y, z
 
-    def _course(self, t_ns: int, dt_s: float, moved_m: Vector3) -> None:
+    def _course(self, fix: _Fix) -> None:
+        """Give the heading a course over about a second: between closer fixes it would be noise."""
         s = self._state
-        if s.heading.yaw_offset_rad is not None or dt_s > 3.0:
+        old = s.course_from
+        if s.heading.yaw_offset_rad is not None or (old is not None and fix.t_ns - old.t_ns < 0.9e9):
             return
-        middle = s.path.at(t_ns - int(0.5e9 * dt_s))
-        if middle is not None:
-            vx, vy, vz = (d / dt_s for d in moved_m)
+        s.course_from = fix
+        middle = s.path.at((fix.t_ns + old.t_ns) // 2) if old else None
+        if old is not None and middle is not None and fix.t_ns - old.t_ns < 3e9:
+            dt_s = (fix.t_ns - old.t_ns) * 1e-9
+            vx, vy, vz = (d / dt_s for d in _difference(fix.p_site_m, old.p_site_m))
             s.heading.course((vx, vy, vz), middle.wxyz_level_body)
 
     # -- heading and camera -------------------------------------------------------------------------------------------
@@ -395,6 +402,7 @@ class _State:
         self.fix: _Fix | None = None
         self.fix_is_new = False
         self.outliers = 0
+        self.course_from: _Fix | None = None
         self.sights: deque[_Sight] = deque(maxlen=_SIGHTS)
         self.innovations: list[Innovation] = []
 

@@ -2,6 +2,7 @@
 
 from math import atan2, hypot, pi
 
+from tracker.estimator import Snapshot
 from tracker.measurements import ImuSample, Matrix
 from tracker.rig import Rig
 
@@ -44,3 +45,11 @@ class Upright:
         off_rad = (wanted_rad - self.quarter_turns * pi / 2 + pi) % (2.0 * pi) - pi
         if abs(off_rad) > hold_rad:
             self.quarter_turns = round(wanted_rad / (pi / 2)) % 4
+
+    def snapshot(self) -> Snapshot:
+        """Return the whole state."""
+        return self._up_body, self.quarter_turns
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Become what the snapshot was taken of."""
+        self._up_body, self.quarter_turns = snapshot

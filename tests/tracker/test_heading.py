@@ -44,6 +44,6 @@ def test_a_course_needs_walking_and_agreement() -> None:
         heading.course((0.3 * cos(index), 0.3 * sin(index), 0.0), wxyz_from_yaw(0.0))
         heading.course((1.3 * cos(2.5 * index), 1.3 * sin(2.5 * index), 0.0), wxyz_from_yaw(0.0))
     assert heading.yaw_offset_rad is None
-    for _ in range(4):
+    for _ in range(6):
         heading.course((0.0, 1.3, 0.0), wxyz_from_yaw(0.5))
     assert heading.yaw_offset_rad == pytest.approx(pi / 2 - 0.5)

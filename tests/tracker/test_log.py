@@ -1,0 +1,220 @@
+"""Logs: what is written is read back, by other libraries too, and damage costs only what it touched."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
+from rosbags.highlevel import AnyReader
+from rosbags.typesys import Stores, get_typestore
+
+from tracker.errors import InputError, MalformedInput
+from tracker.estimator import Origin
+from tracker.log import Log
+from tracker.log_writer import LogWriter
+from tracker.measurements import (
+    CompassHeading,
+    Frame,
+    GpsFix,
+    GpsVelocity,
+    ImuSample,
+    MagSample,
+    Measurement,
+    TruePose,
+)
+from tracker.pictures import ArrayPicture
+from tracker.rig import CameraModel, Rig
+
+ORIGIN = Origin(37.9366, 27.3447, 88.4)
+CAMERA = CameraModel(64, 48, 60.0, 61.0, 31.5, 23.5, "plumb_bob", (-0.1, 0.01, 0.0, 0.0, 0.0))
+COV = (4.0, 0.0, 0.0, 0.0, 4.0, 0.0, 0.0, 0.0, 9.0)
+MS = 1_000_000
+KNOWN = (True, True, True, True, 0.0)
+START_NS = 1_000_000_000_000
+
+
+def _rig() -> Rig:
+    T_body_imu = np.eye(4)
+    T_body_imu[:3, :3] = np.diag([-1.0, -1.0, 1.0])
+    return Rig(T_body_imu=T_body_imu, camera=CAMERA)
+
+
+def _picture(number: int) -> ArrayPicture:
+    rows, columns = np.mgrid[0:48, 0:64]
+    pixels = np.stack([rows * 4 + number, columns * 3, rows + columns], axis=2) % 256
+    return ArrayPicture(pixels.astype(np.uint8))
+
+
+def _walk(seconds: int = 3) -> list[Measurement]:
+    """Every kind of measurement, in order of arrival."""
+    found: list[Measurement] = []
+    for index in range(seconds * 100):
+        t = START_NS + index * 10 * MS
+        late = t + 2 * MS
+        found.append(ImuSample(t, late, (0.1, 0.2, index * 1e-3), (0.0, 0.1, 9.81)))
+        found.append(TruePose(t, late, (index * 0.01, 1.0, 2.0), (1.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0), *KNOWN))
+        if index % 10 == 0:
+            found.append(MagSample(t, late, (2e-5, 0.0, -4e-5)))
+            found.append(CompassHeading(t, late, 1.0))
+            found.append(Frame(t, t + 3 * MS, index // 10, _picture(index // 10)))
+        if index % 100 == 0:
+            found.append(GpsFix(t, t + 4 * MS, 37.9366, 27.3447, 90.0, COV))
+            found.append(GpsVelocity(t, t + 4 * MS, (1.0, 0.5, 0.0)))
+    return found
+
+
+def _write(path: Path, measurements: list[Measurement], video: Any = "jpeg") -> Path:
+    with LogWriter(path, _rig(), ORIGIN, t_start_ns=START_NS, video=video, rate_hz=10.0) as writer:
+        for measurement in measurements:
+            writer.write(measurement)
+    return path
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A log with every sensor."""
+    return _write(tmp_path_factory.mktemp("log") / "walk.mcap", _walk())
+
+
+def test_reads_back_what_was_written(whole: Path) -> None:
+    """Numbers are kept to the last bit, pictures apart; the IMU's axes are turned to the sensor and back."""
+    log = Log.open(whole)
+    rounded = (Frame, CompassHeading)
+    got = list(log.messages())
+    exact = sorted((m for m in _walk() if not isinstance(m, rounded)), key=lambda m: m.t_recv_ns)
+    assert [m for m in got if not isinstance(m, rounded)] == exact
+    assert [m.yaw_rad for m in got if isinstance(m, CompassHeading)] == pytest.approx([1.0] * 30)
+    assert not log.skipped
+    assert log.info.counts == {
+        "imu": 300, "mag": 30, "compass": 30, "gps": 3, "gps_velocity": 3, "frames": 30, "truth": 300
+    }  # fmt: skip
+    assert log.info.truth_origin == ORIGIN
+    assert log.rig.camera == CAMERA
+    np.testing.assert_allclose(log.rig.T_body_imu, _rig().T_body_imu, atol=1e-12)
+
+
+@pytest.mark.parametrize("video", ["jpeg", "h264"])
+def test_pictures_survive(tmp_path: Path, video: str) -> None:
+    """Each picture comes back under its own number, from the start and from the middle."""
+    log = Log.open(_write(tmp_path / "walk.mcap", _walk(), video))
+    for start_ns in (None, START_NS + 1_555 * MS):
+        frames = [m for m in log.messages(start_ns=start_ns) if isinstance(m, Frame)]
+        assert [f.frame_id for f in frames] == list(range(0 if start_ns is None else 16, 30))
+        for frame in frames:
+            difference = frame.picture.gray().astype(int) - _picture(frame.frame_id).gray()
+            assert np.abs(difference).mean() < 4.0
+            assert frame.picture.jpeg().startswith(b"\xff\xd8")
+    assert not log.skipped
+
+
+def test_reading_from_the_middle_is_the_end_of_reading_all(whole: Path) -> None:
+    """A seek must not see other numbers."""
+    log = Log.open(whole)
+    start_ns = START_NS + 1_234 * MS
+    late = [m for m in log.messages() if m.t_recv_ns >= start_ns and not isinstance(m, Frame)]
+    assert [m for m in log.messages(start_ns=start_ns) if not isinstance(m, Frame)] == late
+
+
+def test_opens_in_mcap_ros2_support(whole: Path) -> None:
+    """Our numbers, read by another library."""
+    with whole.open("rb") as file:
+        reader = make_reader(file, decoder_factories=[DecoderFactory()])
+        decoded = [message for _, channel, _, message in reader.iter_decoded_messages(topics=["/gps/fix"])]
+    assert [message.latitude for message in decoded] == [37.9366] * 3
+
+
+def test_opens_in_rosbags(whole: Path) -> None:
+    """As a bag, by its own index."""
+    with AnyReader([whole], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
+        topics = {connection.topic: connection.msgcount for connection in reader.connections}
+    assert topics["/imu/data_raw"] == 300
+    assert topics["/camera/image/compressed"] == 30
+
+
+def test_a_cut_log_plays_to_where_it_breaks(whole: Path, tmp_path: Path) -> None:
+    """The summary, the index and the last chunk are gone."""
+    cut = tmp_path / "cut.mcap"
+    data = _write(tmp_path / "long.mcap", _walk(20)).read_bytes()
+    cut.write_bytes(data[: len(data) * 2 // 3])
+    log = Log.open(cut)
+    assert log.info.truncated
+    imu = [m for m in log.messages() if isinstance(m, ImuSample)]
+    assert 100 < len(imu) < 2000
+    assert log.skipped["truncated"] == 1
+
+
+def test_bad_values_are_left_out_and_counted(tmp_path: Path) -> None:
+    """NaN, a stamp twice, a stamp that went back, a stamp from the future, bytes that are no picture."""
+    nan = float("nan")
+    good = [ImuSample(START_NS + i * 10 * MS, START_NS + i * 10 * MS, (0.0,) * 3, (0.0, 0.0, 9.8)) for i in range(5)]
+    t_recv = good[-1].t_ns + MS
+    bad: list[Measurement] = [
+        ImuSample(t_recv, t_recv, (nan, 0.0, 0.0), (0.0, 0.0, 9.8)),
+        ImuSample(good[-1].t_ns, t_recv, (0.0,) * 3, (0.0, 0.0, 9.8)),
+        ImuSample(good[2].t_ns, t_recv, (0.0,) * 3, (0.0, 0.0, 9.8)),
+        ImuSample(t_recv + 10**12, t_recv, (0.0,) * 3, (0.0, 0.0, 9.8)),
+    ]
+    last = ImuSample(t_recv + MS, t_recv + MS, (0.0,) * 3, (0.0, 0.0, 9.8))
+    log = Log.open(_write(tmp_path / "walk.mcap", [*good, *bad, last]))
+    assert list(log.messages()) == [*good, last]
+    assert log.skipped == {"not_finite": 1, "duplicate_stamp": 1, "stamp_went_back": 1, "stamp_after_arrival": 1}
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [(None, "no file"), (b"", "not an MCAP"), (b"\x00" * 400, "not an MCAP"), (b"no mcap", "not an MCAP")],
+)
+def test_one_sentence_for_what_is_no_log(tmp_path: Path, data: bytes | None, words: str) -> None:
+    """The sentence names the file."""
+    path = tmp_path / "walk.mcap"
+    if data is not None:
+        path.write_bytes(data)
+    with pytest.raises(MalformedInput, match=words) as error:
+        Log.open(path)
+    assert str(path) in str(error.value)
+
+
+def test_a_log_without_imu_and_gps_is_refused(tmp_path: Path) -> None:
+    """It says what is missing."""
+    mag = [MagSample(START_NS, START_NS, (1e-5, 0.0, 0.0))]
+    with pytest.raises(MalformedInput, match="no IMU and no GPS"):
+        Log.open(_write(tmp_path / "walk.mcap", list(mag)))
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(cut=st.floats(0.0, 1.0), flips=st.lists(st.tuples(st.floats(0.0, 0.9999), st.integers(0, 255)), max_size=12))
+def test_damage_never_escapes(whole: Path, tmp_path: Path, cut: float, flips: list[tuple[float, int]]) -> None:
+    """Any cut and any changed bytes: either a clear refusal or a reading to the end."""
+    data = bytearray(whole.read_bytes())
+    for place, value in flips:
+        data[int(place * len(data))] = value
+    path = tmp_path / "damaged.mcap"
+    path.write_bytes(data[: int(cut * len(data)) if cut < 0.5 else len(data)])
+    try:
+        log = Log.open(path)
+        for measurement in log.messages():
+            if isinstance(measurement, Frame):
+                measurement.picture.gray()
+    except InputError:
+        pass
+
+
+def test_every_real_log_is_read_whole() -> None:
+    """Each message of every recording becomes a measurement or a counted reason."""
+    folder = Path(__file__).parents[3] / "shared" / "data"
+    if not folder.exists():
+        pytest.skip("../shared absent")
+    for path in sorted(folder.glob("*.mcap")):
+        log = Log.open(path)
+        end_ns = log.info.t_start_ns + 20_000_000_000
+        last_ns = 0
+        for measurement in log.messages():
+            assert measurement.t_recv_ns >= last_ns
+            last_ns = measurement.t_recv_ns
+            if last_ns > end_ns:
+                break
+        assert sum(log.skipped.values()) <= 3, (path, log.skipped)

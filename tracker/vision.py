@@ -1,0 +1,205 @@
+"""The camera's front end: features tracked from a held keyframe, and the motion since then from the essential matrix.
+
+Deterministic: the same pictures give the same motions (OpenCV's RANSAC starts from a fixed seed).
+"""
+
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tracker import lens, two_view
+from tracker.errors import MalformedInput
+from tracker.estimator import Snapshot
+from tracker.measurements import Frame, Image, Matrix, Vector3, VisualMotion
+from tracker.rig import CameraModel
+
+
+@dataclass(frozen=True)
+class VisionSettings:
+    """Thresholds. The paper gives only "the number of features matched" as its keyframe rule."""
+
+    features: int = 220
+    least_inliers: int = 30
+    bearing_sigma_px: float = 0.7
+    least_parallax_px: float = 2.0
+    """Median displacement beyond rotation; with less, the direction of travel is noise."""
+    key_share: float = 0.5
+    """A new keyframe when fewer of its features than this are still seen,"""
+    key_least: int = 60
+    """ or fewer than this many,"""
+    key_parallax_px: float = 20.0
+    """ or they have moved this far against each other,"""
+    key_age_s: float = 1.0
+    """ or it is this old,"""
+    key_period_s: float = 0.25
+    """ but not sooner than the paper's four a second, unless nothing else is left to track."""
+    stale_s: float = 0.8
+    """Pictures further apart than this cannot be tracked across."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Tracks:
+    """The held keyframe and what is still seen of it. Arrays are replaced, never changed."""
+
+    gray: Image
+    """The newest picture."""
+    t_ns: int
+    points_px: NDArray[np.float32]
+    """(N, 2) where the features are in it."""
+    t_key_ns: int
+    bearings_key: Matrix
+    """(N, 3) where they were seen at the keyframe."""
+    born: int
+    """How many features the keyframe began with."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Motion:
+    R_key_cam: Matrix
+    direction_key: Vector3
+    inliers: NDArray[np.bool_]
+    parallax_px: float
+
+
+@dataclass
+class VisionFrontEnd:
+    """Turns pictures into motions since a keyframe."""
+
+    camera: CameraModel
+    settings: VisionSettings = field(default_factory=VisionSettings)
+    _tracks: _Tracks | None = None
+
+    def step(self, frame: Frame) -> VisualMotion | None:
+        """Take a picture in order of capture; None for the first, and for one that shows no motion for certain."""
+        try:
+            gray = frame.picture.gray()
+        except MalformedInput:
+            return None
+        tracks = self._tracks
+        if tracks is not None and frame.t_ns <= tracks.t_ns:
+            return None
+        if tracks is None or gray.shape != tracks.gray.shape or frame.t_ns - tracks.t_ns > self.settings.stale_s * 1e9:
+            self._tracks = self._keyframe(gray, frame.t_ns, np.empty((0, 2), np.float32))
+            return None
+        tracks = _follow(tracks, gray, frame.t_ns)
+        if len(tracks.points_px) < 8:
+            self._tracks = self._keyframe(gray, frame.t_ns, tracks.points_px)
+            return None
+        motion = self._motion(tracks, self._camera_of(gray))
+        good = motion.inliers
+        seen = replace(tracks, points_px=tracks.points_px[good], bearings_key=tracks.bearings_key[good])
+        is_keyframe = self._is_due(seen, motion.parallax_px)
+        self._tracks = self._keyframe(gray, frame.t_ns, seen.points_px) if is_keyframe else seen
+        inliers = int(np.count_nonzero(good))
+        if inliers < self.settings.least_inliers:
+            return None
+        return VisualMotion(
+            frame.t_ns,
+            frame.t_recv_ns,
+            frame.frame_id,
+            tracks.t_key_ns,
+            motion.R_key_cam,
+            motion.direction_key,
+            inliers,
+            motion.parallax_px,
+            is_keyframe,
+        )
+
+    def _is_due(self, seen: _Tracks, parallax_px: float) -> bool:
+        settings, left = self.settings, len(seen.points_px)
+        if left < settings.least_inliers:
+            return True
+        age_s = (seen.t_ns - seen.t_key_ns) * 1e-9
+        if age_s < settings.key_period_s:
+            return False
+        few = left < settings.key_share * seen.born or left < settings.key_least
+        return few or parallax_px > settings.key_parallax_px or age_s >= settings.key_age_s
+
+    def _camera_of(self, gray: Image) -> CameraModel:
+        height, width = gray.shape
+        if (width, height) == (self.camera.width_px, self.camera.height_px):
+            return self.camera
+        return lens.scaled(self.camera, width, height)
+
+    def _keyframe(self, gray: Image, t_ns: int, kept_px: NDArray[np.float32]) -> _Tracks:
+        """Hold a picture: what is tracked already goes on, new features fill the empty parts."""
+        wanted = self.settings.features - len(kept_px)
+        points = kept_px
+        if wanted > 0:
+            apart = max(5, round(0.7 * (gray.size / self.settings.features) ** 0.5 / 2))
+            mask = np.full(gray.shape, 255, np.uint8)
+            for x, y in kept_px:
+                cv2.circle(mask, (round(float(x)), round(float(y))), apart, 0, -1)
+            found = cv2.goodFeaturesToTrack(gray, wanted, 0.005, apart, mask=mask, blockSize=5)
+            if found is not None:
+                points = np.concatenate([kept_px, found.reshape(-1, 2).astype(np.float32)])
+        rays = lens.unproject(self._camera_of(gray), points.astype(np.float64))
+        return _Tracks(gray, t_ns, points, t_ns, two_view.bearings(rays), len(points))
+
+    def _motion(self, tracks: _Tracks, camera: CameraModel) -> _Motion:
+        settings = self.settings
+        xy = lens.unproject(camera, tracks.points_px.astype(np.float64))
+        b_key, b_cam = tracks.bearings_key, two_view.bearings(xy)
+        sigma_rad = settings.bearing_sigma_px / camera.fx_px
+        R_turn = two_view.fit_rotation(b_key, b_cam, sigma_rad)
+        moved_px = camera.fx_px * two_view.parallax(b_key, b_cam, R_turn)
+        median_px = float(np.median(moved_px))
+        if median_px >= settings.least_parallax_px and len(b_key) >= settings.least_inliers:
+            motion = _by_essential_matrix(b_key, b_cam, sigma_rad, median_px)
+            if motion is not None:
+                return motion
+        limit = max(3.0, 3.0 * median_px)
+        return _Motion(R_turn, (0.0, 0.0, 0.0), moved_px < limit, median_px)
+
+    def snapshot(self) -> Snapshot:
+        """Return the whole state."""
+        return self._tracks
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Become what the snapshot was taken of."""
+        self._tracks = snapshot
+
+
+def _follow(tracks: _Tracks, gray: Image, t_ns: int) -> _Tracks:
+    """Track features into the next picture, and back again: what does not return is lost (Lucas-Kanade on a pyramid)."""
+    there, found = _flow(tracks.gray, gray, tracks.points_px)
+    back, found_back = _flow(gray, tracks.gray, there)
+    height, width = gray.shape
+    off_px = np.linalg.norm(back - tracks.points_px, axis=1)
+    inside = (there[:, 0] >= 0) & (there[:, 1] >= 0) & (there[:, 0] <= width - 1) & (there[:, 1] <= height - 1)
+    good = found & found_back & (off_px < 1.0) & inside
+    return replace(tracks, gray=gray, t_ns=t_ns, points_px=there[good], bearings_key=tracks.bearings_key[good])
+
+
+def _flow(gray: Image, onto: Image, points_px: NDArray[np.float32]) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
+    """Return where points went, (N, 2), and whether they were found, (N,)."""
+    nothing: Any = None
+    there, found, _ = cv2.calcOpticalFlowPyrLK(gray, onto, points_px, nothing, winSize=(17, 17), maxLevel=4)
+    return np.asarray(there, np.float32), np.asarray(found).ravel() == 1
+
+
+def _by_essential_matrix(b_key: Matrix, b_cam: Matrix, sigma_rad: float, parallax_px: float) -> _Motion | None:
+    """Return the motion by five points in RANSAC, refined over all inliers; None where they agree on none."""
+    ahead = (b_key[:, 2] > 0.1) & (b_cam[:, 2] > 0.1)
+    xy_key, xy_cam = b_key[:, :2] / b_key[:, 2:], b_cam[:, :2] / b_cam[:, 2:]
+    try:
+        E, mask = cv2.findEssentialMat(xy_key, xy_cam, np.eye(3), cv2.RANSAC, 0.999, 1.5 * sigma_rad, maxIters=200)
+        if E is None or E.shape != (3, 3):
+            return None
+        count, R_cam_key, t_cam, mask = cv2.recoverPose(E, xy_key, xy_cam, np.eye(3), mask=mask)
+    except cv2.error:
+        return None  # degenerate points
+    chosen = (mask.ravel() != 0) & ahead
+    if count < 8 or np.count_nonzero(chosen) < 8:
+        return None
+    R_key_cam = np.asarray(R_cam_key.T, np.float64)
+    direction = -R_key_cam @ np.asarray(t_cam, np.float64).ravel()
+    R_key_cam, direction = two_view.refine(
+        b_key[chosen], b_cam[chosen], R_key_cam, direction / np.linalg.norm(direction), sigma_rad
+    )
+    inliers = np.abs(two_view.sampson(b_key, b_cam, R_key_cam, direction)) < 3.0 * sigma_rad
+    x, y, z = (float(value) for value in direction)
+    return _Motion(R_key_cam, (x, y, z), inliers & ahead, parallax_px)
