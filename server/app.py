@@ -1,0 +1,60 @@
+"""The FastAPI application, put together from what it is given. No globals, no settings read, no thread."""
+
+from collections.abc import Collection, Iterable, Mapping
+from pathlib import Path
+from time import monotonic_ns
+from typing import Any, Final
+
+from fastapi import FastAPI
+from fastapi.telemetry import TelemetryConfig
+
+from server.auth import Tokens
+from server.guards import Guard
+from server.routes import Bundle, api_routes, page_routes
+from server.sessions import Sessions
+from server.sockets import socket_routes
+
+LOOPBACK_HOSTS = ("127.0.0.1", "localhost", "::1")
+#: FastAPI would export traces where its environment variables say so; nothing but loopback is ever contacted.
+_NO_TELEMETRY: Final[TelemetryConfig] = {
+    "tracing": False,
+    "metrics": False,
+    "logs": False,
+    "operation_spans": False,
+    "auto_configure": False,
+}
+
+
+def create_app(
+    *,
+    web_folder: Path,
+    models_folder: Path,
+    site: Mapping[str, Any],
+    rig_tokens: Iterable[str],
+    viewer_tokens: Iterable[str] | None = None,
+    allowed_hosts: Collection[str] = LOOPBACK_HOSTS,
+    console_url: str | None = None,
+) -> FastAPI:
+    """Return the server's application; `app.state.sessions` are its sessions.
+
+    Args:
+        web_folder: The built pages (`web/dist`); where they are missing the pages say so.
+        models_folder: Where the `*.glb` of `/models/` lie.
+        site: What `/api/site` answers, see `server/site_facts.py`.
+        rig_tokens: Any of these lets a rig push.
+        viewer_tokens: Any of these lets a viewer watch; None lets everybody, which is right on loopback only.
+        allowed_hosts: Names in the Host header that are us; `*` for any.
+        console_url: Where `/console` leads, if anywhere.
+    """
+    sessions = Sessions(monotonic_ns)
+    # The interactive documentation loads its scripts from elsewhere, so there is none; /openapi.json stays.
+    app = FastAPI(title="Agora", docs_url=None, redoc_url=None, telemetry=_NO_TELEMETRY)
+    app.state.sessions = sessions
+    app.include_router(api_routes(sessions, site, web_folder))
+    app.include_router(page_routes(web_folder, models_folder, console_url))
+    app.include_router(
+        socket_routes(sessions, Tokens(rig_tokens), None if viewer_tokens is None else Tokens(viewer_tokens))
+    )
+    app.mount("/", Bundle(directory=web_folder, check_dir=False), name="bundle")
+    app.add_middleware(Guard, allowed_hosts=allowed_hosts)
+    return app

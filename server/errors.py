@@ -1,0 +1,43 @@
+"""The server's errors, drawn as a tree.
+
+ServerError
+├── MalformedMessage     a message on a socket that is not what the wire format says
+├── PortInUse            the port to listen on is taken (the command line exits 3)
+├── AddressUnavailable   the address to listen on is not this machine's
+├── UnknownSession       no session of that name
+├── ServerFull           as many viewers or sessions as the server will take
+├── LinkRefused          a server will not have this rig: wrong token, or another rig took the session
+└── ConsoleUnavailable   the operator's console cannot start; everything else goes on without it
+"""
+
+
+class ServerError(Exception):
+    """Root of everything that the server raises on purpose. The message is one sentence with the remedy."""
+
+
+class MalformedMessage(ServerError):
+    """Bytes or text from a socket that do not parse."""
+
+
+class PortInUse(ServerError):
+    """Another program listens on the port."""
+
+
+class AddressUnavailable(ServerError):
+    """The host to listen on is not an address of this machine, or may not be bound."""
+
+
+class UnknownSession(ServerError):
+    """No rig has opened a session of that name."""
+
+
+class ServerFull(ServerError):
+    """A limit of the server is reached."""
+
+
+class LinkRefused(ServerError):
+    """The server turned the rig away and will do so again."""
+
+
+class ConsoleUnavailable(ServerError):
+    """The operator's console cannot start."""

@@ -1,0 +1,131 @@
+"""The text messages of both sockets: JSON, checked against these classes. Pure.
+
+Viewer -> server: `ack`, `control`. Server -> rig: `control`. Rig -> server: `state`, `reply`. Server -> viewer: `hello`, `state`,
+`reply`. What a class does not name is ignored, so an older server understands a newer rig.
+"""
+
+from typing import Annotated, Any, Final, Literal, TypeAlias, TypeVar
+
+import msgspec
+from msgspec import UNSET, Meta, Struct, UnsetType
+
+from server.errors import MalformedMessage
+from server.wire import VERSION
+
+MAX_VIEWER_TEXT: Final = 4 * 1024
+MAX_RIG_TEXT: Final = 64 * 1024
+
+T = TypeVar("T")
+Action = Literal["play", "pause", "seek", "speed", "estimator"]
+Seconds: TypeAlias = Annotated[float, Meta(ge=0.0, le=1e9)]
+Name: TypeAlias = Annotated[str, Meta(max_length=256)]
+Sentence: TypeAlias = Annotated[str, Meta(max_length=2000)]
+
+
+class Ack(Struct, frozen=True, tag_field="type", tag="ack"):
+    """A viewer has drawn, or dropped, this frame."""
+
+    frame_id: Annotated[int, Meta(ge=0, lt=2**32)]
+
+
+class ControlRequest(Struct, frozen=True, tag_field="type", tag="control"):
+    """A viewer asks the rig for something."""
+
+    request_id: Annotated[str, Meta(min_length=1, max_length=64)]
+    action: Action
+    value: float | Name | None = None
+    """Seconds for `seek`, a factor for `speed`, a name for `estimator`."""
+
+
+class ControlReply(Struct, frozen=True, tag_field="type", tag="reply"):
+    """What became of a request."""
+
+    request_id: Name
+    ok: bool
+    error: Sentence | None = None
+    did_seek: bool = False
+
+
+class Playback(Struct, frozen=True):
+    """Where a replay stands."""
+
+    playing: bool
+    position_s: Seconds
+    speed: Annotated[float, Meta(gt=0.0, le=1e3)]
+    looping: bool
+
+
+class SessionFields(Struct, frozen=True, kw_only=True):
+    """What a rig tells of its session; a field that is left out stays as it was."""
+
+    kind: Literal["live", "replay"] | UnsetType = UNSET
+    log: Name | UnsetType | None = UNSET
+    duration_s: Seconds | UnsetType = UNSET
+    estimator: Name | UnsetType = UNSET
+    estimators: list[Name] | UnsetType = UNSET
+    unavailable: dict[Name, Sentence] | UnsetType = UNSET
+    playback: Playback | UnsetType | None = UNSET
+    anchor: Literal["site", "here"] | UnsetType = UNSET
+    notice: Sentence | UnsetType | None = UNSET
+    health: dict[Name, Any] | UnsetType = UNSET
+
+    def given(self) -> dict[str, Any]:
+        """Return the fields that were given, as JSON values."""
+        names = SessionFields.__struct_fields__
+        values = {name: getattr(self, name) for name in names}
+        return {name: msgspec.to_builtins(value) for name, value in values.items() if value is not UNSET}
+
+
+class StateUpdate(SessionFields, frozen=True, kw_only=True, tag_field="type", tag="state"):
+    """A rig's news: fields of the session at the top level, or under `session`."""
+
+    session: SessionFields | UnsetType = UNSET
+
+    def changes(self) -> dict[str, Any]:
+        """Return every field that the message gives."""
+        nested = {} if self.session is UNSET else self.session.given()
+        return nested | self.given()
+
+
+_FROM_VIEWER: msgspec.json.Decoder[Ack | ControlRequest] = msgspec.json.Decoder(Ack | ControlRequest)
+_FROM_RIG: msgspec.json.Decoder[StateUpdate | ControlReply] = msgspec.json.Decoder(StateUpdate | ControlReply)
+_CONTROL: msgspec.json.Decoder[ControlRequest] = msgspec.json.Decoder(ControlRequest)
+
+
+def parse_from_viewer(text: str) -> Ack | ControlRequest:
+    """Read what a viewer may say; `MalformedMessage` for everything else."""
+    return _parse(_FROM_VIEWER, text, MAX_VIEWER_TEXT)
+
+
+def parse_from_rig(text: str) -> StateUpdate | ControlReply:
+    """Read what a rig may say; `MalformedMessage` for everything else."""
+    return _parse(_FROM_RIG, text, MAX_RIG_TEXT)
+
+
+def parse_control(text: str) -> ControlRequest:
+    """Read what the server may say to a rig; `MalformedMessage` for everything else."""
+    return _parse(_CONTROL, text, MAX_VIEWER_TEXT * 2)
+
+
+def encode(message: Struct) -> str:
+    """Return a message as JSON."""
+    return msgspec.json.encode(message).decode()
+
+
+def hello(session: dict[str, Any]) -> str:
+    """Return the first message to a viewer."""
+    return msgspec.json.encode({"type": "hello", "version": VERSION, "session": session}).decode()
+
+
+def state(session: dict[str, Any]) -> str:
+    """Return the message that tells viewers of a change."""
+    return msgspec.json.encode({"type": "state", "session": session}).decode()
+
+
+def _parse(decoder: "msgspec.json.Decoder[T]", text: str, max_length: int) -> T:
+    if len(text) > max_length:
+        raise MalformedMessage(f"expected a text message of at most {max_length} characters, got {len(text)}")
+    try:
+        return decoder.decode(text)
+    except (msgspec.MsgspecError, ValueError, RecursionError) as exc:
+        raise MalformedMessage(f"no message of version {VERSION}: {exc}") from exc

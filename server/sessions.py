@@ -1,0 +1,197 @@
+"""Sessions: one rig, its newest frame and state, and the mailboxes of those who watch. For one event loop, no locks, no I/O."""
+
+import re
+from collections.abc import Callable, Iterator
+from typing import Any, Final
+
+from server import messages
+from server.errors import ServerFull, UnknownSession
+from server.fanout import Mailbox
+from server.messages import ControlReply, ControlRequest, StateUpdate
+from server.wire import decode_frame, decode_pose, is_frame
+
+MAX_SESSIONS: Final = 16
+MAX_VIEWERS: Final = 64
+MAX_PENDING: Final = 64
+#: Close code of our own: another rig has taken the session.
+REPLACED: Final = 4409
+NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
+
+_DEFAULTS: Final[dict[str, Any]] = {
+    "kind": "live",
+    "log": None,
+    "duration_s": 0.0,
+    "estimator": "",
+    "estimators": [],
+    "unavailable": {},
+    "playback": None,
+    "anchor": "site",
+    "notice": None,
+    "health": {},
+}
+_LEFT = "The rig has left: what is shown is the last that it sent."
+
+
+class Session:
+    """One walk, as the server knows it."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.frames = 0
+        """Frames that came from the rig."""
+        self.t_frame_ns: int | None = None
+        """When the newest came, on the clock that `take_binary` is given."""
+        self.viewers: set[Mailbox] = set()
+        self._fields = dict(_DEFAULTS)
+        self._rig: Mailbox | None = None
+        self._frame: tuple[int, bytes] | None = None
+        self._pose: bytes | None = None
+        self._pending: dict[str, tuple[Mailbox, str]] = {}
+        self._requests = 0
+
+    @property
+    def connected(self) -> bool:
+        """Whether a rig is there."""
+        return self._rig is not None
+
+    @property
+    def playing(self) -> bool:
+        """Whether frames are to be expected."""
+        playback = self._fields["playback"]
+        return self.connected and (playback is None or bool(playback["playing"]))
+
+    def describe(self) -> dict[str, Any]:
+        """Return the session as viewers and `/api/sessions` get it."""
+        session = {"name": self.name, **self._fields, "connected": self.connected}
+        if not self.connected:
+            session["notice"] = _LEFT
+            if session["playback"] is not None:
+                session["playback"] = session["playback"] | {"playing": False}
+        return session
+
+    # -- the rig ------------------------------------------------------------------------------------------------------
+
+    def attach_rig(self, rig: Mailbox) -> None:
+        """Give the session to a rig; the one that had it is closed."""
+        if self._rig is not None:
+            self._rig.close(REPLACED, "another rig took this session")
+            self._fail_pending()
+        self._rig = rig
+        self._tell()
+
+    def detach_rig(self, rig: Mailbox) -> None:
+        """Note that a rig is gone and tell the viewers; nothing happens where another has its place."""
+        if self._rig is rig:
+            self._rig = None
+            self._fail_pending()
+            self._tell()
+
+    def take_text(self, text: str) -> None:
+        """Take a rig's text message; `MalformedMessage` where it is none."""
+        message = messages.parse_from_rig(text)
+        if isinstance(message, StateUpdate):
+            self._fields |= message.changes()
+            self._tell()
+        else:
+            self._relay_reply(message)
+
+    def take_binary(self, data: bytes, t_ns: int) -> None:
+        """Take a rig's frame or pose and hand it to every viewer; `MalformedMessage` where it is neither."""
+        if is_frame(data):
+            frame_id = decode_frame(data)[0].frame_id
+            self._frame, self.t_frame_ns = (frame_id, data), t_ns
+            self.frames += 1
+            for viewer in self.viewers:
+                viewer.put_frame(frame_id, data)
+        else:
+            decode_pose(data)
+            self._pose = data
+            for viewer in self.viewers:
+                viewer.put_pose(data)
+
+    # -- the viewers --------------------------------------------------------------------------------------------------
+
+    def join(self, viewer: Mailbox) -> None:
+        """Add a viewer, who gets at once what all the others have; `ServerFull` where there are too many."""
+        if len(self.viewers) >= MAX_VIEWERS:
+            raise ServerFull(f"{MAX_VIEWERS} viewers watch already: try again when one has left.")
+        self.viewers.add(viewer)
+        viewer.put_text(messages.hello(self.describe()))
+        if self._frame is not None:
+            viewer.put_frame(*self._frame)
+        if self._pose is not None:
+            viewer.put_pose(self._pose)
+
+    def leave(self, viewer: Mailbox) -> None:
+        """Forget a viewer and what it asked for."""
+        self.viewers.discard(viewer)
+        self._pending = {key: asked for key, asked in self._pending.items() if asked[0] is not viewer}
+
+    def control(self, viewer: Mailbox, request: ControlRequest) -> None:
+        """Forward a viewer's request to the rig under a number of our own: two viewers may choose the same."""
+        if self._rig is None or len(self._pending) >= MAX_PENDING:
+            error = "No rig is connected." if self._rig is None else "The rig is busy: try again."
+            viewer.put_text(messages.encode(ControlReply(request.request_id, ok=False, error=error)))
+            return
+        self._requests += 1
+        key = str(self._requests)
+        self._pending[key] = (viewer, request.request_id)
+        self._rig.put_text(messages.encode(ControlRequest(key, request.action, request.value)))
+
+    # -----------------------------------------------------------------------------------------------------------------
+
+    def _tell(self) -> None:
+        text = messages.state(self.describe())
+        for viewer in self.viewers:
+            viewer.put_text(text)
+
+    def _relay_reply(self, reply: ControlReply) -> None:
+        if asked := self._pending.pop(reply.request_id, None):
+            viewer, request_id = asked
+            viewer.put_text(messages.encode(ControlReply(request_id, reply.ok, reply.error, reply.did_seek)))
+
+    def _fail_pending(self) -> None:
+        for key in list(self._pending):
+            self._relay_reply(ControlReply(key, ok=False, error="The rig left before it answered."))
+
+
+class Sessions:
+    """All sessions, oldest first."""
+
+    def __init__(self, now_ns: Callable[[], int]) -> None:
+        self.now_ns = now_ns
+        """The clock that frames are stamped with."""
+        self._sessions: dict[str, Session] = {}
+
+    def __iter__(self) -> Iterator[Session]:
+        return iter(self._sessions.values())
+
+    def get(self, name: str) -> Session:
+        """Return a session; `UnknownSession` where no rig ever opened it."""
+        if name not in self._sessions:
+            raise UnknownSession(f"There is no session {name[:64]!r}: see /api/sessions for those that there are.")
+        return self._sessions[name]
+
+    def open(self, name: str) -> Session:
+        """Return the session, new if need be; the oldest one without a rig makes room.
+
+        Raises:
+            UnknownSession: The name is not one that a session can have.
+            ServerFull: Every place is taken by a rig.
+        """
+        if not NAME.fullmatch(name):
+            raise UnknownSession("A session's name is 1 to 64 letters, digits, dots, dashes or underscores.")
+        if name not in self._sessions:
+            self._make_room()
+            self._sessions[name] = Session(name)
+        return self._sessions[name]
+
+    def _make_room(self) -> None:
+        if len(self._sessions) < MAX_SESSIONS:
+            return
+        idle = next((s for s in self if not s.connected), None)
+        if idle is None:
+            raise ServerFull(f"{MAX_SESSIONS} rigs are connected already: try again when one has left.")
+        for viewer in idle.viewers:
+            viewer.close(1001, "the session has ended")
+        del self._sessions[idle.name]
