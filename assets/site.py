@@ -96,7 +96,11 @@ class Monument:
         return self.figures["height_m"].value
 
     def measure(self, name: str) -> float:
-        """A figure's value in its unit; `KeyError` is a mistake in a builder, not in the data (see `_check_kind`)."""
+        """Return a figure's value in its unit; `SiteError` where the data lack what the monument's kind needs."""
+        if name not in self.figures:
+            raise SiteError(
+                f"monument '{self.id}' of kind '{self.kind}' needs the figure '{name}'; add it to monuments.toml."
+            )
         return self.figures[name].value
 
 
@@ -177,10 +181,12 @@ class _Table:
 
     def texts(self, key: str) -> Texts:
         table = self.table(key)
-        return {language: table.get(language, str) for language in LANGUAGES}
+        languages = (LANGUAGE, *(key for key in table.values if key != LANGUAGE))
+        return {language: table.get(language, str) for language in languages}
 
 
-LANGUAGES = ("en", "tr")
+LANGUAGE = "en"
+"""The language that every text must have; others stand beside it."""
 _WORDS: Mapping[type, str] = {float: "number", str: "text", dict: "table", list: "list"}
 
 

@@ -1,0 +1,222 @@
+"""Pictures of a model as a camera on the site takes them: off-screen OpenGL, exact to OpenCV's pinhole, lens by remapping.
+
+One renderer belongs to the thread that made it.
+"""
+
+from collections.abc import Sequence
+from functools import lru_cache
+from pathlib import Path
+from types import TracebackType
+from typing import Any, TypeAlias
+
+import cv2
+import moderngl
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from assets.axes import Array
+from assets.errors import GraphicsMissing
+from assets.gltf import Scene, read_glb
+from assets.lens import Lens, Pinhole
+from assets.shaders import DISC_FRAGMENT, DISC_VERTEX, SCENE_FRAGMENT, SCENE_VERTEX, SKY_FRAGMENT, SKY_VERTEX
+
+Picture: TypeAlias = NDArray[np.uint8]
+NEAR_M, FAR_M = 0.2, 4000.0
+SUN_AZIMUTH_RAD, SUN_ELEVATION_RAD = np.radians(230.0), np.radians(48.0)
+"""An afternoon in early summer."""
+MAX_SAMPLES = 4
+MAX_ANISOTROPY = 4.0
+DISC_CORNERS = 24
+
+
+class Renderer:
+    """Draws one model. `render` gives camera pictures, `target_scene` the same with coloured targets at known points."""
+
+    def __init__(self, model: Path | Scene, width: int, height: int) -> None:
+        """Load `model` (a GLB of `agora build`, or a scene) for pictures of `width` by `height` pixels.
+
+        Raises:
+            AssetError: The model cannot be read.
+            GraphicsMissing: There is no off-screen OpenGL.
+        """
+        scene = model if isinstance(model, Scene) else read_glb(model)
+        self.width, self.height = width, height
+        self._gl = _context()
+        self._targets: dict[tuple[int, int], tuple[Any, Any]] = {}
+        self._scene = self._gl.program(vertex_shader=SCENE_VERTEX, fragment_shader=SCENE_FRAGMENT)
+        self._sky = self._gl.program(vertex_shader=SKY_VERTEX, fragment_shader=SKY_FRAGMENT)
+        self._disc = self._gl.program(vertex_shader=DISC_VERTEX, fragment_shader=DISC_FRAGMENT)
+        self._sky_corners = self._gl.vertex_array(self._sky, [])
+        for program in (self._scene, self._sky):
+            program["sun"].value = sun_direction()
+        self._parts = [self._load(scene, material) for material in scene.textures]
+
+    def __enter__(self) -> "Renderer":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Give the graphics memory back."""
+        self._gl.release()
+
+    def render(
+        self,
+        T_site_cam: ArrayLike,
+        fx: float,
+        fy: float,
+        cx: float,
+        cy: float,
+        distortion_model: str = "none",
+        distortion: Sequence[float] = (),
+    ) -> Picture:
+        """Return the picture (height, width, 3), blue green red, that a camera at `T_site_cam` (4, 4) takes.
+
+        A point at (X, Y, Z) of the camera's frame has its centre where `cv2.projectPoints` says, pixel (0, 0) being the
+        centre of the top-left pixel. Models: none, plumb_bob, rational_polynomial, equidistant (cv2.fisheye).
+        """
+        return self.target_scene(np.zeros((0, 3)), (), T_site_cam, fx, fy, cx, cy, distortion_model, distortion)
+
+    def target_scene(
+        self,
+        points_m: ArrayLike,
+        colours: Sequence[tuple[int, int, int]],
+        T_site_cam: ArrayLike,
+        fx: float,
+        fy: float,
+        cx: float,
+        cy: float,
+        distortion_model: str = "none",
+        distortion: Sequence[float] = (),
+        radius_px: float = 4.0,
+    ) -> Picture:
+        """Return the same picture with a disc of one plain colour over all else at each of `points_m` (n, 3), site frame.
+
+        The graphics pipeline projects the discs' corners, nothing else does. `colours` are blue green red.
+        """
+        lens = Lens(Pinhole(self.width, self.height, fx, fy, cx, cy), distortion_model, tuple(distortion))
+        pose = np.asarray(T_site_cam, dtype=np.float64)
+        points = np.asarray(points_m, dtype=np.float64).reshape(-1, 3)
+        if pose.shape != (4, 4) or len(points) != len(colours):
+            raise ValueError(
+                f"expected a (4, 4) pose and one colour per point, got {pose.shape} and {len(colours)} for {len(points)}"
+            )
+        if lens.is_straight:
+            return self._draw(lens.pinhole, pose, points, colours, radius_px)
+        wide, place = _oversized(lens)
+        return np.asarray(cv2.remap(self._draw(wide, pose, points, colours, radius_px), place, None, cv2.INTER_LINEAR))
+
+    def _draw(
+        self, camera: Pinhole, pose: Array, points: Array, colours: Sequence[tuple[int, int, int]], radius_px: float
+    ) -> Picture:
+        multisampled, plain = self._target(camera.width_px, camera.height_px)
+        multisampled.use()
+        self._gl.viewport = (0, 0, camera.width_px, camera.height_px)
+        self._gl.clear()
+        T_cam_site = np.linalg.inv(pose)
+        projection = projection_from_pinhole(camera)
+        self._gl.disable(moderngl.DEPTH_TEST)
+        self._sky["R_site_cam"].write(pose[:3, :3].T.astype(np.float32).tobytes())
+        self._sky["scale"].value = (camera.width_px / camera.fx_px, camera.height_px / camera.fy_px)
+        self._sky["centre"].value = ((camera.cx_px + 0.5) / camera.width_px, (camera.cy_px + 0.5) / camera.height_px)
+        self._sky_corners.render(moderngl.TRIANGLE_STRIP, vertices=4)
+        self._gl.enable(moderngl.DEPTH_TEST)
+        self._scene["clip_site"].write((projection @ T_cam_site).T.astype(np.float32).tobytes())
+        self._scene["eye_m"].value = tuple(float(x) for x in pose[:3, 3])
+        for texture, array in self._parts:
+            texture.use(0)
+            array.render()
+        if len(points):
+            self._gl.disable(moderngl.DEPTH_TEST)
+            self._discs(camera, points @ T_cam_site[:3, :3].T + T_cam_site[:3, 3], colours, radius_px)
+        self._gl.copy_framebuffer(plain, multisampled)
+        pixels = np.frombuffer(plain.read(components=3, alignment=1), dtype=np.uint8)
+        return np.ascontiguousarray(pixels.reshape(camera.height_px, camera.width_px, 3)[..., ::-1])
+
+    def _discs(
+        self, camera: Pinhole, points_cam_m: Array, colours: Sequence[tuple[int, int, int]], radius_px: float
+    ) -> None:
+        """Discs parallel to the picture: their outlines project to circles about their centres' projections."""
+        angle = np.linspace(0.0, 2.0 * np.pi, DISC_CORNERS + 1)
+        rim = np.stack([np.cos(angle) / camera.fx_px, np.sin(angle) / camera.fy_px], -1) * radius_px
+        rows = []
+        for point, (blue, green, red) in zip(points_cam_m, colours, strict=True):
+            corners = point + np.pad(rim, ((0, 0), (0, 1))) * point[2]
+            fan = np.stack([np.broadcast_to(point, corners[1:].shape), corners[:-1], corners[1:]], axis=1).reshape(
+                -1, 3
+            )
+            rows.append(np.hstack([fan, np.broadcast_to(np.array([red, green, blue]) / 255.0, fan.shape)]))
+        self._disc["clip_cam"].write(projection_from_pinhole(camera).T.astype(np.float32).tobytes())
+        buffer = self._gl.buffer(np.concatenate(rows).astype(np.float32).tobytes())
+        array = self._gl.vertex_array(self._disc, [(buffer, "3f 3f", "position", "colour")])
+        array.render()
+        array.release()
+        buffer.release()
+
+    def _target(self, width: int, height: int) -> tuple[Any, Any]:
+        if (width, height) not in self._targets:
+            samples, size = min(MAX_SAMPLES, self._gl.max_samples), (width, height)
+            colour, depth = (
+                self._gl.renderbuffer(size, 3, samples=samples),
+                self._gl.depth_renderbuffer(size, samples=samples),
+            )
+            plain = self._gl.framebuffer([self._gl.renderbuffer(size, 3)])
+            self._targets[(width, height)] = (self._gl.framebuffer([colour], depth), plain)
+        return self._targets[(width, height)]
+
+    def _load(self, scene: Scene, material: str) -> tuple[Any, Any]:
+        """All meshes of one material as one draw call."""
+        picture = scene.textures[material]
+        rgb = np.ascontiguousarray(picture[..., ::-1])
+        texture = self._gl.texture(rgb.shape[1::-1], 3, rgb.tobytes(), alignment=1)
+        texture.build_mipmaps()
+        texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
+        texture.anisotropy = MAX_ANISOTROPY
+        meshes = [mesh for node in scene.nodes for mesh in node.meshes if mesh.material == material]
+        starts = np.cumsum([0] + [len(mesh.positions_m) for mesh in meshes[:-1]])
+        floats = [np.hstack([m.positions_m, m.normals, m.uvs, m.colours / np.float32(255.0)]) for m in meshes]
+        indices = np.concatenate([m.triangles + s for m, s in zip(meshes, starts, strict=True)]).astype(np.uint32)
+        vertices = self._gl.buffer(np.concatenate(floats).astype(np.float32).tobytes())
+        layout = [(vertices, "3f 3f 2f 3f", "position", "normal", "uv", "colour")]
+        return texture, self._gl.vertex_array(self._scene, layout, self._gl.buffer(indices.tobytes()))
+
+
+def sun_direction() -> tuple[float, float, float]:
+    """Return the unit vector towards the sun, site frame."""
+    flat = np.cos(SUN_ELEVATION_RAD)
+    east, north = flat * np.sin(SUN_AZIMUTH_RAD), flat * np.cos(SUN_AZIMUTH_RAD)
+    return float(east), float(north), float(np.sin(SUN_ELEVATION_RAD))
+
+
+def projection_from_pinhole(camera: Pinhole) -> Array:
+    """Return the (4, 4) map from the camera's frame to OpenGL's clip space.
+
+    Row 0 of the framebuffer is the top row of the picture, so nothing is flipped when it is read; the half pixel is there
+    because OpenGL counts from a pixel's edge and OpenCV from its centre.
+    """
+    w, h = camera.width_px, camera.height_px
+    return np.array(
+        [
+            [2.0 * camera.fx_px / w, 0.0, 2.0 * (camera.cx_px + 0.5) / w - 1.0, 0.0],
+            [0.0, 2.0 * camera.fy_px / h, 2.0 * (camera.cy_px + 0.5) / h - 1.0, 0.0],
+            [0.0, 0.0, (FAR_M + NEAR_M) / (FAR_M - NEAR_M), -2.0 * FAR_M * NEAR_M / (FAR_M - NEAR_M)],
+            [0.0, 0.0, 1.0, 0.0],
+        ]
+    )
+
+
+def _context() -> Any:
+    try:
+        return moderngl.create_standalone_context(backend="egl")
+    except Exception as exc:  # moderngl raises plain Exception, and ImportError or OSError for a missing library
+        raise GraphicsMissing(
+            f"no off-screen OpenGL on this machine ({exc}); on Debian or Ubuntu run: apt-get install libegl1 libgl1 libgl1-mesa-dri"
+        ) from exc
+
+
+@lru_cache(maxsize=4)
+def _oversized(lens: Lens) -> tuple[Pinhole, NDArray[np.float32]]:
+    return lens.oversized()

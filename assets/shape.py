@@ -1,0 +1,193 @@
+"""Shapes under construction: polygons and smooth surfaces in a monument's own axes, laid on the site as meshes.
+
+A monument's own axes: x from the first corner of its footprint to the second, y to its left, z up from its floor; metres.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from assets.axes import Array
+from assets.materials import MATERIALS
+from assets.site import Monument
+
+STEEPEST_FLOOR = 0.75
+"""Faces whose normal's z is above this take their texture from above, others from the side."""
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Triangles of one material, site frame."""
+
+    material: str
+    positions_m: NDArray[np.float32]
+    """(n, 3)"""
+    normals: NDArray[np.float32]
+    """(n, 3), unit."""
+    uvs: NDArray[np.float32]
+    """(n, 2) in repeats of the material's texture."""
+    colours: NDArray[np.uint8]
+    """(n, 3) red green blue, linear, multiplied with the texture."""
+    triangles: NDArray[np.uint32]
+    """(m, 3), counter-clockwise from outside."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a shape's own axes lie on the site."""
+
+    origin_m: Array
+    """(3,) site frame."""
+    R_site_own: Array
+    """(3, 3)"""
+
+    @classmethod
+    def at(cls, east_m: float, north_m: float, z_m: float, yaw_rad: float = 0.0) -> "Place":
+        """Return axes at a point, x turned counter-clockwise from east by `yaw_rad`."""
+        sin, cos = np.sin(yaw_rad), np.cos(yaw_rad)
+        return cls(np.array([east_m, north_m, z_m]), np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]))
+
+    @classmethod
+    def of(cls, monument: Monument) -> "Place":
+        """Return the monument's own axes at its floor level."""
+        (e0, n0), (e1, n1) = monument.footprint.corners_en_m[:2]
+        return cls.at(e0, n0, monument.base_z_m, float(np.arctan2(n1 - n0, e1 - e0)))
+
+    def own(self, points_site_m: ArrayLike) -> Array:
+        """Return (..., 3) points of the site in these axes."""
+        return (np.asarray(points_site_m, dtype=np.float64) - self.origin_m) @ self.R_site_own
+
+
+def footprint_own_m(monument: Monument) -> Array:
+    """Return the footprint's corners (n, 2) in the monument's own axes."""
+    corners = np.array([(e, n, monument.base_z_m) for e, n in monument.footprint.corners_en_m])
+    return Place.of(monument).own(corners)[:, :2]
+
+
+@dataclass
+class _Batch:
+    material: str
+    points: Array
+    normals: Array
+    uvs: Array
+    tint: Array
+    triangles: NDArray[np.int64]
+
+
+@dataclass
+class Shape:
+    """What has been built so far. `tint` darkens or colours a part: one number or (red, green, blue), 1 is the material itself."""
+
+    batches: list[_Batch] = field(default_factory=list)
+
+    def polygons(self, material: str, corners: ArrayLike, tint: ArrayLike = 1.0) -> None:
+        """Add flat convex polygons, (n, 3) or (k, n, 3), counter-clockwise from outside; `tint` may have one row per polygon."""
+        points = np.asarray(corners, dtype=np.float64)
+        points = points[None] if points.ndim == 2 else points
+        k, n, _ = points.shape
+        normal = _unit(np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]))
+        normals = np.repeat(normal[:, None], n, axis=1)
+        fan = np.array([(0, i, i + 1) for i in range(1, n - 1)])
+        triangles = (fan[None] + np.arange(k)[:, None, None] * n).reshape(-1, 3)
+        tints = np.asarray(tint, dtype=np.float64)
+        tints = np.repeat(tints[:, None], n, axis=1).reshape(k * n, -1) if tints.ndim == 2 else tints
+        self._add(material, points.reshape(-1, 3), normals.reshape(-1, 3), _planar(points, normal), tints, triangles)
+
+    def surface(self, material: str, points: ArrayLike, tint: ArrayLike = 1.0) -> None:
+        """Add a smooth surface through a grid of points, (a, b, 3): outside is to the left of a seen along b."""
+        p = np.asarray(points, dtype=np.float64)
+        a, b, _ = p.shape
+        normals = _unit(np.cross(np.gradient(p, axis=0), np.gradient(p, axis=1)))
+        along_a = np.concatenate([np.zeros((1, b)), np.cumsum(np.linalg.norm(np.diff(p, axis=0), axis=2), axis=0)])
+        along_b = np.concatenate(
+            [np.zeros((a, 1)), np.cumsum(np.linalg.norm(np.diff(p, axis=1), axis=2), axis=1)], axis=1
+        )
+        self._add(
+            material, p.reshape(-1, 3), normals.reshape(-1, 3), np.stack([along_a, along_b], -1), tint, _cells(a, b)
+        )
+
+    def box(self, material: str, low: Sequence[float], high: Sequence[float], tint: ArrayLike = 1.0) -> None:
+        """Add an upright box without its underside."""
+        self.boxes(material, np.array([low]), np.array([high]), tint)
+
+    def boxes(self, material: str, low: Array, high: Array, tint: ArrayLike = 1.0) -> None:
+        """Add upright boxes from (k, 3) lower to (k, 3) upper corners, without undersides; `tint` may have one row per box."""
+        corners = np.stack([low, high])[_BOX, :, np.arange(3)]  # (5, 4, 3, k) after fancy indexing
+        faces = np.moveaxis(corners, -1, 0).reshape(-1, 4, 3)
+        tints = np.asarray(tint, dtype=np.float64)
+        self.polygons(material, faces, np.repeat(tints, 5, axis=0) if tints.ndim == 2 else tints)
+
+    def copies(self, part: "Shape", offsets_m: Array, yaw_rad: Array | None = None, scale: Array | None = None) -> None:
+        """Add `part` once per row of `offsets_m` (k, 3), turned about z by `yaw_rad` (k,) and enlarged by `scale` (k,)."""
+        k = len(offsets_m)
+        yaw, size = np.zeros(k) if yaw_rad is None else yaw_rad, np.ones(k) if scale is None else scale
+        sin, cos, zero, one = np.sin(yaw), np.cos(yaw), np.zeros(k), np.ones(k)
+        turn = np.stack([cos, -sin, zero, sin, cos, zero, zero, zero, one], -1).reshape(k, 1, 3, 3)
+        for batch in part.batches:
+            n = len(batch.points)
+            points = (turn @ batch.points[None, :, :, None])[..., 0] * size[:, None, None] + offsets_m[:, None]
+            normals = (turn @ batch.normals[None, :, :, None])[..., 0]
+            triangles = batch.triangles[None] + np.arange(k)[:, None, None] * n
+            uvs, tint = np.tile(batch.uvs, (k, 1)), np.tile(batch.tint, (k, 1))
+            flat = (points.reshape(-1, 3), normals.reshape(-1, 3), uvs, tint, triangles.reshape(-1, 3))
+            self.batches.append(_Batch(batch.material, *flat))
+
+    def meshes(self, place: Place) -> list[Mesh]:
+        """Return the shape on the site, one mesh per material, in the order of the materials' first use."""
+        names = list(dict.fromkeys(batch.material for batch in self.batches))
+        return [_joined(name, [b for b in self.batches if b.material == name], place) for name in names]
+
+    def _add(
+        self, material: str, points: Array, normals: Array, uvs: Array, tint: ArrayLike, triangles: NDArray[np.int64]
+    ) -> None:
+        tints = np.asarray(tint, dtype=np.float64)
+        rows = np.broadcast_to(tints if tints.ndim else np.full(3, float(tints)), (len(points), 3))
+        self.batches.append(_Batch(material, points, normals, uvs.reshape(-1, 2), np.array(rows), triangles))
+
+
+def _joined(material: str, batches: list[_Batch], place: Place) -> Mesh:
+    starts = np.cumsum([0] + [len(b.points) for b in batches[:-1]])
+    return Mesh(
+        material,
+        (np.concatenate([b.points for b in batches]) @ place.R_site_own.T + place.origin_m).astype(np.float32),
+        (np.concatenate([b.normals for b in batches]) @ place.R_site_own.T).astype(np.float32),
+        (np.concatenate([b.uvs for b in batches]) / MATERIALS[material].tile_m).astype(np.float32),
+        np.clip(np.concatenate([b.tint for b in batches]) * 255.0, 0.0, 255.0).round().astype(np.uint8),
+        np.concatenate([b.triangles + s for b, s in zip(batches, starts, strict=True)]).astype(np.uint32),
+    )
+
+
+_BOX = np.array(
+    [
+        [[0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]],  # top
+        [[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1]],
+        [[1, 0, 0], [1, 1, 0], [1, 1, 1], [1, 0, 1]],
+        [[1, 1, 0], [0, 1, 0], [0, 1, 1], [1, 1, 1]],
+        [[0, 1, 0], [0, 0, 0], [0, 0, 1], [0, 1, 1]],
+    ]
+)
+"""The five faces of a box, counter-clockwise from outside: 0 the lower, 1 the upper value of x, y, z."""
+
+
+def _unit(vectors: Array) -> Array:
+    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12))
+
+
+def _planar(points: Array, normal: Array) -> Array:
+    """Texture coordinates in metres of (k, n, 3) flat polygons: from above on floors, along and down elsewhere."""
+    flat = normal[:, 2] > STEEPEST_FLOOR
+    along = _unit(np.stack([-normal[:, 1], normal[:, 0], np.zeros(len(normal))], -1))
+    along[np.abs(normal[:, 2]) > 0.999] = (1.0, 0.0, 0.0)
+    along[flat & (np.abs(normal[:, 2]) <= 0.999)] = (1.0, 0.0, 0.0)
+    down = np.cross(along, normal)
+    down[flat] = (0.0, -1.0, 0.0)
+    return np.stack([np.einsum("kni,ki->kn", points, along), np.einsum("kni,ki->kn", points, down)], -1)
+
+
+def _cells(a: int, b: int) -> NDArray[np.int64]:
+    """Two triangles per cell of an (a, b) grid, split from its first to its last corner."""
+    first = (np.arange(a - 1)[:, None] * b + np.arange(b - 1)).ravel()
+    next_a, next_b, last = first + b, first + 1, first + b + 1
+    return np.concatenate([np.stack([first, next_a, last], -1), np.stack([first, last, next_b], -1)])

@@ -1,0 +1,147 @@
+"""Textures painted with numpy: tileable, the same bytes at every run. No file, no camera and no other site stands behind them."""
+
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assets.axes import Array
+
+Texture: TypeAlias = NDArray[np.uint8]
+"""(n, n, 3) blue green red, sRGB."""
+SIZE = 512
+
+
+def noise(seed: int, size: int, coarsest: float, finest: float, slope: float = 1.0) -> Array:
+    """Return tileable noise (size, size), mean 0 and deviation 1, between two wave numbers, falling by f**-slope."""
+    spectrum = np.fft.rfft2(np.random.default_rng(seed).standard_normal((size, size)))
+    wave = np.hypot(np.fft.fftfreq(size)[:, None] * size, np.fft.rfftfreq(size)[None] * size)
+    keep = (wave >= coarsest) & (wave <= finest)
+    spectrum *= np.where(keep, np.maximum(wave, 1.0) ** -slope, 0.0)
+    field: Array = np.fft.irfft2(spectrum, s=(size, size))
+    field /= field.std()
+    return field
+
+
+def _mix(low: tuple[int, int, int], high: tuple[int, int, int], share: Array) -> Array:
+    """Blend two red green blue colours by `share` (n, n), which is cut to 0..1."""
+    s = np.clip(share, 0.0, 1.0)[..., None]
+    return np.asarray(low) * (1.0 - s) + np.asarray(high) * s
+
+
+def _painted(rgb: Array) -> Texture:
+    return np.ascontiguousarray(np.clip(rgb, 0.0, 255.0).round().astype(np.uint8)[..., ::-1])
+
+
+def _courses(seed: int, rows: int, columns: int, joint_px: float, spread: float) -> tuple[Array, Array]:
+    """A wall of blocks: a tone per block (deviation `spread`), and 0 in the joints rising to 1 inside."""
+    rng = np.random.default_rng(seed)
+    y, x = np.mgrid[0:SIZE, 0:SIZE].astype(np.float64)
+    row = (y * rows / SIZE).astype(int)
+    shifted = (x * columns / SIZE + (row % 2) * 0.5 + rng.uniform(-0.12, 0.12, rows)[row]) % columns
+    column = shifted.astype(int)
+    tone = rng.normal(0.0, spread, (rows, columns))[row, column]
+    inside_x = np.minimum(shifted % 1.0, 1.0 - shifted % 1.0) * SIZE / columns
+    down = y * rows / SIZE % 1.0
+    inside_y = np.minimum(down, 1.0 - down) * SIZE / rows
+    return tone, np.clip(np.minimum(inside_x, inside_y) / joint_px, 0.0, 1.0)
+
+
+def marble() -> Texture:
+    """White marble with grey veins."""
+    veins = np.abs(noise(1, SIZE, 2, 40, 1.6))
+    cloud = noise(2, SIZE, 1, 24, 1.2)
+    rgb = _mix((176, 174, 172), (240, 234, 222), 0.25 + np.minimum(veins, 1.1) * 0.75)
+    return _painted(rgb + 5.0 * cloud[..., None] + 3.0 * noise(3, SIZE, 60, 250, 0.3)[..., None])
+
+
+def ashlar() -> Texture:
+    """Marble blocks in courses of half a metre."""
+    tone, joint = _courses(11, 8, 4, 2.5, 1.0)
+    rgb = _mix((196, 186, 168), (232, 224, 208), 0.5 + 0.2 * tone + 0.2 * noise(12, SIZE, 2, 60, 1.0))
+    return _painted(rgb * (0.72 + 0.28 * joint)[..., None] + 4.0 * noise(13, SIZE, 40, 250, 0.3)[..., None])
+
+
+def rustic() -> Texture:
+    """Bossed blocks, as in terrace walls."""
+    tone, joint = _courses(21, 7, 4, 9.0, 1.0)
+    rough = noise(22, SIZE, 6, 120, 0.9)
+    rgb = _mix((128, 120, 106), (196, 186, 166), 0.5 + 0.22 * tone + 0.22 * rough)
+    return _painted(rgb * (0.55 + 0.45 * joint)[..., None])
+
+
+def plaster() -> Texture:
+    """Lime plaster, weathered."""
+    rgb = _mix((206, 190, 162), (232, 222, 200), 0.5 + 0.25 * noise(31, SIZE, 1, 30, 1.1))
+    return _painted(rgb + 4.0 * noise(32, SIZE, 30, 250, 0.3)[..., None])
+
+
+def paving() -> Texture:
+    """Marble slabs of unequal tone."""
+    tone, joint = _courses(41, 6, 4, 2.5, 1.0)
+    rgb = _mix((168, 158, 142), (214, 205, 188), 0.5 + 0.24 * tone + 0.24 * noise(42, SIZE, 2, 80, 0.9))
+    return _painted(rgb * (0.62 + 0.38 * joint)[..., None] + 5.0 * noise(43, SIZE, 50, 250, 0.2)[..., None])
+
+
+def tiles() -> Texture:
+    """Terracotta pan tiles with round cover tiles; down the roof is down the picture."""
+    y, x = np.mgrid[0:SIZE, 0:SIZE].astype(np.float64)
+    across, down = x * 8 / SIZE, y * 6 / SIZE
+    tone = np.random.default_rng(51).normal(0.0, 1.0, (6, 8))[down.astype(int), across.astype(int)]
+    cover = 0.5 + 0.5 * np.cos(2.0 * np.pi * across)
+    shade = (0.66 + 0.34 * cover) * np.clip(0.55 + 3.0 * (1.0 - down % 1.0), 0.0, 1.0)
+    rgb = _mix((150, 84, 54), (206, 132, 92), 0.5 + 0.22 * tone + 0.15 * noise(52, SIZE, 4, 80, 0.9))
+    return _painted(rgb * shade[..., None])
+
+
+def grass() -> Texture:
+    """Dry summer grass over pale earth, with darker tussocks and small stones."""
+    size = 1024
+    patches, tussock = noise(61, size, 2, 14, 1.0), noise(62, size, 10, 90, 0.7)
+    blades = noise(63, size, 70, 480, 0.15)
+    rgb = _mix((150, 133, 92), (196, 180, 132), 0.5 + 0.3 * patches)
+    green = np.clip(0.15 + 0.35 * tussock + 0.2 * patches, 0.0, 0.85)[..., None]
+    rgb = rgb * (1.0 - green) + np.array((98, 104, 56)) * green
+    pebbles = np.clip((noise(64, size, 30, 120, 0.3) - 2.2) * 2.0, 0.0, 1.0)[..., None]
+    return _painted((rgb + 15.0 * blades[..., None]) * (1.0 - pebbles) + np.array((214, 206, 190)) * pebbles)
+
+
+def earth() -> Texture:
+    """Trodden earth and gravel."""
+    rgb = _mix((150, 128, 98), (196, 176, 142), 0.5 + 0.22 * noise(71, SIZE, 1, 30, 1.0))
+    gravel = np.clip((noise(72, SIZE, 30, 110, 0.3) - 1.4) * 1.5, 0.0, 1.0)[..., None]
+    return _painted((rgb + 8.0 * noise(73, SIZE, 40, 250, 0.2)[..., None]) * (1.0 - 0.6 * gravel) + 126.0 * gravel)
+
+
+def stone() -> Texture:
+    """Old marble in the open: grey and ochre lichen, pits and cracks."""
+    rgb = _mix((140, 134, 122), (220, 212, 194), 0.5 + 0.3 * noise(81, SIZE, 2, 60, 0.9))
+    ochre = np.clip(noise(82, SIZE, 3, 40, 0.9) - 0.9, 0.0, 1.0)[..., None] * 0.6
+    rgb = rgb * (1.0 - ochre) + np.array((176, 146, 88)) * ochre
+    pits = np.clip((np.abs(noise(83, SIZE, 6, 90, 1.0)) - 0.12) * 5.0, 0.0, 1.0)
+    return _painted(rgb * (0.66 + 0.34 * pits)[..., None] + 7.0 * noise(84, SIZE, 50, 250, 0.2)[..., None])
+
+
+def scrub() -> Texture:
+    """A hillside from afar: maquis, dry grass and limestone."""
+    bushes = noise(91, SIZE, 8, 90, 0.5)
+    rgb = _mix((92, 96, 62), (176, 160, 118), 0.5 - 0.42 * bushes + 0.15 * noise(92, SIZE, 1, 10, 1.0))
+    rock = np.clip((noise(93, SIZE, 6, 80, 0.5) - 1.5) * 1.6, 0.0, 1.0)[..., None]
+    return _painted(rgb * (1.0 - rock) + np.array((196, 188, 172)) * rock)
+
+
+def leaves() -> Texture:
+    """Foliage in light and shade."""
+    rgb = _mix((34, 44, 24), (116, 124, 76), 0.45 + 0.33 * noise(101, SIZE, 12, 160, 0.3))
+    return _painted(rgb + 8.0 * noise(102, SIZE, 60, 250, 0.1)[..., None])
+
+
+def wood() -> Texture:
+    """Oak beams and doors."""
+    grain = noise(111, SIZE, 1, 200, 0.6)
+    return _painted(_mix((78, 54, 34), (134, 98, 64), 0.5 + 0.3 * np.roll(grain, 3, axis=0)))
+
+
+def water() -> Texture:
+    """Still water in a basin."""
+    return _painted(_mix((62, 92, 96), (126, 156, 154), 0.5 + 0.25 * noise(121, SIZE, 2, 30, 1.2)))

@@ -1,0 +1,248 @@
+"""`agora`: the command line, and the one place where everything is put together."""
+
+import json
+import logging
+import sys
+import webbrowser
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from signal import SIGINT, SIGTERM, signal
+from threading import Event
+from typing import Annotated, Literal, NoReturn
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+from assets.errors import AssetError
+from assets.site import Site, load_site
+from server.errors import ServerError
+from tracker.errors import InputError
+from tracker.estimator import Origin
+from tracker.estimators import ESTIMATORS
+from tracker.fuzzy import INDICES, LEVELS, NEXT_INDEX, rules_by_name
+
+ROOT = Path(__file__).parents[1]
+SITE = ROOT / "assets" / "state_agora"
+DEMO_LOG = ROOT / "assets" / "demo" / "state-agora-walk.mcap"
+WEB = ROOT / "web" / "dist"
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    help="Outdoor augmented reality for heritage sites: replay a walk, measure a tracker, simulate, build a site's models.",
+)
+out = Console(highlight=False)
+err = Console(stderr=True, highlight=False)
+
+LogFile = Annotated[Path, typer.Argument(help="A walk: a ROS 2 bag in one MCAP file.", metavar="LOG")]
+EstimatorName = Annotated[str | None, typer.Option("--estimator", help=f"One of {', '.join(ESTIMATORS)}.")]
+Anchor = Annotated[
+    Literal["site", "here"],
+    typer.Option(help="`here` lays the site's origin at the walk's first fix: any recording then shows the square."),
+]
+Height = Annotated[
+    Literal["ground", "gps"], typer.Option(help="Where the eyes are: on the ground's model, or where the GPS says.")
+]
+Port = Annotated[int, typer.Option(min=0, max=65535, help="Port on this machine; 0 takes a free one.")]
+Browser = Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page.")]
+SiteFolder = Annotated[Path, typer.Option("--site", help="The folder of the site.", show_default="the State Agora")]
+
+
+@app.command()
+def demo(
+    estimator: EstimatorName = None,
+    anchor: Anchor = "site",
+    height: Height = "ground",
+    port: Port = 8470,
+    browser: Browser = True,
+    site: SiteFolder = SITE,
+) -> None:
+    """Play the recorded walk that comes with Agora as AR in a browser, again and again; ctrl-C ends it."""
+    _show(DEMO_LOG, estimator, anchor, height, port, browser, site, looping=True)
+
+
+@app.command()
+def replay(
+    log: LogFile,
+    estimator: EstimatorName = None,
+    anchor: Anchor = "site",
+    height: Height = "ground",
+    port: Port = 8470,
+    browser: Browser = True,
+    loop: Annotated[bool, typer.Option("--loop", help="Begin again at the end.")] = False,
+    site: SiteFolder = SITE,
+) -> None:
+    """Play a recorded walk as AR in a browser; ctrl-C ends it."""
+    _show(log, estimator, anchor, height, port, browser, site, looping=loop)
+
+
+def _show(
+    path: Path,
+    estimator: str | None,
+    anchor: Literal["site", "here"],
+    height: Literal["ground", "gps"],
+    port: int,
+    browser: bool,
+    site_folder: Path,
+    *,
+    looping: bool,
+) -> None:
+    # imported here, so that `agora rules` need not wait for a web server
+    from server.replay import ReplaySettings
+    from server.showing import Showing
+    from tracker.log import Log
+
+    site = load_site(site_folder)
+    log = Log.open(path)
+    settings = ReplaySettings(estimator, anchor, height, looping)
+    _require_built(site)
+    stop = Event()
+    for number in (SIGINT, SIGTERM):
+        signal(number, lambda *_: stop.set())
+    with Showing(site, log, settings, port=port, web=WEB) as showing:
+        out.print(f"Agora is at {showing.url}", soft_wrap=True)
+        sys.stdout.flush()
+        if browser:
+            webbrowser.open(f"{showing.url}replay/{log.name}")
+        while not stop.wait(0.2):
+            showing.check()
+
+
+def _require_built(site: Site) -> None:
+    if not (WEB / "index.html").is_file() or not any((site.folder / "built").glob("*.glb")):
+        err.print("agora: the pages or the models are not built yet: run `make setup` (or `make demo`).")
+        raise typer.Exit(3)
+
+
+@app.command()
+def evaluate(
+    logs: Annotated[list[Path], typer.Argument(help="Walks as MCAP files.", metavar="LOG...")],
+    estimator: Annotated[
+        list[str] | None, typer.Option(help="May be given more than once; all that the sensors allow where it is not.")
+    ] = None,
+    json_file: Annotated[Path | None, typer.Option("--json", help="Write the figures here.", metavar="FILE")] = None,
+    poses: Annotated[
+        Path | None, typer.Option(help="Write LOG.ESTIMATOR.tum here, for other tools.", metavar="DIR")
+    ] = None,
+) -> None:
+    """Measure estimators on recorded walks: the paper's filter error, and the error against truth where there is one."""
+    import cv2
+
+    from server.evaluation import evaluate as evaluate_logs
+    from server.evaluation import print_table, write_json
+
+    cv2.setNumThreads(1)  # a rig has other work for its cores, and figures should not depend on how many there are
+    with _progress("evaluating") as bar:
+        task = bar.add_task("", total=1.0)
+        evaluation = evaluate_logs(
+            logs, tuple(estimator or ()), poses, lambda label, done: bar.update(task, description=label, completed=done)
+        )
+    if json_file is not None:
+        write_json(evaluation, json_file)
+    wide = out if out.is_terminal else Console(highlight=False, width=170)
+    print_table(evaluation, wide)
+
+
+@app.command()
+def simulate(
+    log: Annotated[Path, typer.Argument(help="The log to write.", metavar="OUT")],
+    seed: Annotated[int, typer.Option(min=0, help="Another seed, another walk.")] = 1,
+    duration: Annotated[float | None, typer.Option(min=1.0, help="Seconds; 75, or the dataset's own.")] = None,
+    camera: Annotated[
+        bool, typer.Option("--camera", help="Render what the camera sees (about 6 pictures a second).")
+    ] = False,
+    dataset: Annotated[int, typer.Option(min=0, max=5, help="In the manner of the paper's dataset 1 to 5.")] = 0,
+    video: Annotated[Literal["h264", "jpeg"], typer.Option(help="How pictures are stored.")] = "h264",
+    site: SiteFolder = SITE,
+) -> None:
+    """Simulate a visitor's walk across the site: IMU, magnetometer, GPS, camera and full truth, the same for the same seed."""
+    from assets.terrain import build_terrain
+
+    from server.simulation import write_walk
+    from tracker.choreography import DATASET_DURATION_S
+    from tracker.simulate import WalkSettings
+
+    place = load_site(site)
+    seconds = duration or DATASET_DURATION_S.get(dataset, 75.0)
+    settings = WalkSettings(seed=seed, duration_s=seconds, dataset=dataset, origin=_origin(place))
+    model = site / "built" / "today.glb"
+    if camera:
+        _require_built(place)
+    with _progress("simulating") as bar:
+        task = bar.add_task("rendering" if camera else "writing", total=1.0)
+        size = write_walk(
+            log,
+            settings,
+            ground_z_m=build_terrain(place).ground_z_m,
+            model=model if camera else None,
+            video=video,
+            progress=lambda done: bar.update(task, completed=done),
+        )
+    out.print(f"{log}: {seconds:.0f} s, {size / 1e6:.1f} MB")
+
+
+@app.command()
+def build(
+    site: Annotated[Path, typer.Argument(help="The folder of the site.", show_default="the State Agora")] = SITE,
+    report: Annotated[bool, typer.Option("--report", help="Print sizes and counts as JSON.")] = False,
+) -> None:
+    """Build a site's models (glTF) from its facts."""
+    from assets.build import build as build_models
+
+    place = load_site(site)
+    with _progress("building") as bar:
+        task = bar.add_task(place.name["en"], total=1.0)
+        built = build_models(place, place.folder / "built", lambda done: bar.update(task, completed=done))
+    if report:
+        out.print_json(json.dumps(built.as_dict()))
+
+
+@app.command()
+def rules(as_json: Annotated[bool, typer.Option("--json", help="All 81 rules as JSON.")] = False) -> None:
+    """Show the fuzzy controller's rules: which motion model follows which, by the size of the innovation."""
+    if as_json:
+        out.print_json(json.dumps(rules_by_name()))
+        return
+    from rich.table import Table
+
+    table = Table(
+        title="The coefficient that follows 0, 1, 2, for position (P) and rotation (R) alike", title_justify="left"
+    )
+    table.add_column("innovation")
+    for index in INDICES:
+        table.add_column(f"{index} becomes", justify="right")
+    for level in LEVELS:
+        table.add_row(level, *map(str, NEXT_INDEX[level]))
+    out.print(table)
+    out.print("All 81 rules by name: agora rules --json", style="dim")
+
+
+def _origin(site: Site) -> Origin:
+    return Origin(site.origin.lat_deg, site.origin.lon_deg, site.origin.h_ellipsoid_m)
+
+
+@contextmanager
+def _progress(what: str) -> Iterator[Progress]:
+    columns = (
+        TextColumn(what),
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=err, transient=True) as bar:
+        yield bar
+
+
+def main() -> NoReturn:
+    """Run a command; what the user can mend is one sentence and exit code 2, a missing device or library 3."""
+    logging.basicConfig(level=logging.WARNING, format="agora: %(message)s")
+    try:
+        app(standalone_mode=True)
+    except (InputError, AssetError, ServerError) as error:
+        err.print(f"agora: {error}", soft_wrap=True, markup=False)
+        sys.exit(3 if type(error).__name__ == "GraphicsMissing" else 2)
+    sys.exit(0)

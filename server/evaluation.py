@@ -1,0 +1,125 @@
+"""`agora evaluate`: logs through estimators, as a table, as JSON and as poses for other tools."""
+
+import json
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from tracker.errors import InputError, MissingSensor
+from tracker.estimators import ESTIMATORS, check_name, missing_sensors
+from tracker.evaluate import Run, figures, run
+from tracker.log import Log
+from tracker.score import Figures
+
+Progress = Callable[[str, float], None]
+
+
+@dataclass
+class Evaluation:
+    """What came out of some logs and estimators."""
+
+    runs: list[Figures] = field(default_factory=list)
+    missing: list[dict[str, str]] = field(default_factory=list)
+    """Log, estimator and what the log lacks for it."""
+
+
+def evaluate(paths: Iterable[Path], estimators: tuple[str, ...], poses: Path | None, progress: Progress) -> Evaluation:
+    """Run every log through every estimator (none named: all) that its sensors allow.
+
+    Raises:
+        InputError: A log cannot be read, an estimator does not exist, or nothing could be run.
+    """
+    for name in estimators:
+        check_name(name)
+    evaluation = Evaluation()
+    for log in [Log.open(path) for path in paths]:
+        for name in estimators or ESTIMATORS:
+            reason = missing_sensors(name, log.info, log.rig)
+            if reason is not None:
+                evaluation.missing.append({"log": log.name, "estimator": name, "missing": reason})
+                continue
+            label = f"{log.name}  {name}"
+            result = run(log, name, progress=lambda done, label=label: progress(label, done))  # type: ignore[misc]
+            evaluation.runs.append(figures(result))
+            if poses is not None:
+                _write_tum(result, poses)
+    if not evaluation.runs:
+        reasons = "; ".join(f"{m['log']} has {m['missing']} for {m['estimator']}" for m in evaluation.missing)
+        raise MissingSensor(f"Nothing could be run: {reasons}.")
+    return evaluation
+
+
+def write_json(evaluation: Evaluation, path: Path) -> None:
+    """Write `{"runs": [...], "missing": [...]}`."""
+    text = json.dumps({"runs": evaluation.runs, "missing": evaluation.missing}, indent=1, allow_nan=False)
+    try:
+        path.write_text(text + "\n", encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{path} cannot be written: {error.strerror}.") from error
+
+
+def _write_tum(result: Run, folder: Path) -> None:
+    """Write poses as `t x y z qx qy qz qw`, t in seconds of the log."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with (folder / f"{result.log}.{result.estimator.replace('/', '-')}.tum").open("w", encoding="ascii") as file:
+            for pose in result.poses:
+                w, qx, qy, qz = pose.wxyz_site_body
+                numbers = (pose.t_ns * 1e-9, *pose.p_site_m, qx, qy, qz, w)
+                file.write(" ".join(f"{number:.9f}" for number in numbers) + "\n")
+    except OSError as error:
+        raise InputError(f"{folder} cannot be written to: {error.strerror}.") from error
+
+
+#: Heading, key path and format of each column; a path that ends nowhere shows a dash.
+_COLUMNS: tuple[tuple[str, tuple[str, ...], str], ...] = (
+    ("updates", ("updates",), "{:d}"),
+    ("filter error\nm", ("filter_error_m", "mean"), "{:.2f}"),
+    ("\nrad", ("filter_error_rad", "mean"), "{:.3f}"),
+    ("raw GPS\nm", ("gps", "ate_rmse_m"), "{:.2f}"),
+    ("ATE\nm", ("truth", "ate_rmse_m"), "{:.2f}"),
+    ("RPE 10 s\nm", ("truth", "rpe_10s_m"), "{:.2f}"),
+    ("heading\ndeg", ("truth", "heading_rmse_deg"), "{:.2f}"),
+    ("tilt\ndeg", ("truth", "tilt_rmse_deg"), "{:.2f}"),
+    ("jitter\ncm", ("truth", "jitter_rms_m"), "{:.1f}"),
+    ("at 20 m\npx", ("truth", "registration_px", "at_20m", "median"), "{:.0f}"),
+    ("vision\n1/s", ("vision_rate_hz",), "{:.1f}"),
+    ("real\ntime", ("realtime_factor",), "{:.0f}x"),
+)
+
+
+def print_table(evaluation: Evaluation, console: Console) -> None:
+    """Print one row for each run, and what was missing for the others."""
+    table = Table(title="Against the filter's own measurements, and against truth", title_justify="left")
+    table.add_column("log")
+    table.add_column("estimator")
+    for heading, _, _ in _COLUMNS:
+        table.add_column(heading, justify="right")
+    last = ""
+    for row in evaluation.runs:
+        if last and row["log"] != last:
+            table.add_section()
+        table.add_row(row["log"] if row["log"] != last else "", row["estimator"], *_cells(row))
+        last = row["log"]
+    console.print(table)
+    for entry in evaluation.missing:
+        console.print(f"{entry['log']} cannot run {entry['estimator']}: it has {entry['missing']}.", style="yellow")
+    for row in evaluation.runs:
+        if skipped := row["counts"]["skipped"]:
+            what = ", ".join(f"{count} {reason.replace('_', ' ')}" for reason, count in sorted(skipped.items()))
+            console.print(f"{row['log']}: left out {what}.", style="dim")
+
+
+def _cells(row: Figures) -> list[str]:
+    cells = []
+    for heading, path, form in _COLUMNS:
+        value: Any = row
+        for key in path:
+            value = value.get(key) if value is not None else None
+        scale = 100.0 if heading.startswith("jitter") else 1
+        cells.append("-" if value is None else form.format(value * scale))
+    return cells

@@ -1,0 +1,231 @@
+"""A recorded walk pushed to the server as a rig would push it: log, estimator, threads and link joined."""
+
+from concurrent.futures import CancelledError
+from dataclasses import dataclass, replace
+from time import monotonic_ns
+from typing import Literal
+
+from server.console import Console
+from server.messages import ControlReply, ControlRequest
+from server.push import RigLink, frame_message, pose_message
+from tracker.blank import CAMERA, BlankCamera
+from tracker.errors import InputError, MalformedInput
+from tracker.estimator import Origin, Pose
+from tracker.estimators import ESTIMATORS, missing_sensors
+from tracker.evaluate import make_pipeline
+from tracker.geodesy import SiteFrame
+from tracker.geometry import transform
+from tracker.grounding import GroundHeight, on_ground
+from tracker.log import Log
+from tracker.measurements import Frame
+from tracker.pipeline import Pipeline
+from tracker.playback import Playback, Recording, Shown
+from tracker.rig import CameraModel, Rig
+from tracker.runner import Player, PlayerState, ReadAhead, VisionThread
+from tracker.upright import Upright
+
+#: The best first: what plays when nothing was chosen.
+PREFERENCE = ("camera-gps-imu/famm", "gps-imu/famm", "truth")
+#: A walk that begins further than this from the site was recorded elsewhere.
+FAR_M = 3_000.0
+#: Where a camera's intrinsics are unknown: a usual webcam, 60 degrees wide.
+_GUESSED_FOCAL = 0.87
+
+
+@dataclass(frozen=True)
+class ReplaySettings:
+    """How a log is shown."""
+
+    estimator: str | None = None
+    """None for the best that the log's sensors allow."""
+    anchor: Literal["site", "here"] = "site"
+    height: Literal["ground", "gps"] = "ground"
+    looping: bool = False
+
+
+class Replay:
+    """One log being played to one session."""
+
+    def __init__(
+        self,
+        log: Log,
+        settings: ReplaySettings,
+        *,
+        site_origin: Origin,
+        ground_z_m: GroundHeight,
+        eye_height_m: float,
+        console: Console | None = None,
+    ) -> None:
+        """Prepare a replay; `start` starts it.
+
+        Raises:
+            UnknownEstimator, MissingSensor: The estimator cannot run on this log.
+            MissingSensor: No estimator can.
+        """
+        self._log, self._settings, self._console = log, settings, console
+        self._ground_z_m, self._eye_height_m = ground_z_m, eye_height_m
+        self._origin = self._anchor(site_origin)
+        self._rig = _display_rig(log)
+        self._vision: VisionThread | None = None
+        self.estimator = settings.estimator or self._best()
+        self._make_pipeline(self.estimator)  # an error in the choice is the caller's to report, not a thread's
+        recording: Recording = log if log.info.counts["frames"] else BlankCamera(log)
+        self._reading = ReadAhead(recording)
+        playback = Playback(self._reading, log.info.t_start_ns, self._make_pipeline, Upright(log.rig))
+        span = (log.info.t_start_ns, log.info.t_end_ns)
+        self.player = Player(
+            playback,
+            span,
+            estimator=self.estimator,
+            looping=settings.looping,
+            show=self._show,
+            report=self._report,
+        )
+        self._link: RigLink | None = None
+        self._sequence = 0
+
+    def _anchor(self, site_origin: Origin) -> Origin:
+        """Return where the site frame is laid: where it is, or with its origin under the walk's first fix."""
+        fix = self._log.info.first_fix
+        if self._settings.anchor == "site" or fix is None:
+            return site_origin
+        return Origin(fix.lat_deg, fix.lon_deg, fix.h_ellipsoid_m - self._eye_height_m)
+
+    def _best(self) -> str:
+        missing = {name: missing_sensors(name, self._log.info, self._log.rig) for name in PREFERENCE}
+        return next((name for name in PREFERENCE if missing[name] is None), PREFERENCE[1])
+
+    def _make_pipeline(self, name: str) -> Pipeline:
+        pipeline = make_pipeline(name, self._log, self._origin)
+        if self._vision is not None:
+            self._vision.close()
+            self._vision = None
+        if pipeline.front_end is not None:
+            self._vision = VisionThread(pipeline.front_end)
+            pipeline.front_end = self._vision
+        if self._console is not None:
+            self._console.clear()
+        return pipeline
+
+    def start(self, rig_url: str, token: str) -> None:
+        """Connect to the server and play."""
+        self._link = RigLink(rig_url, token, self._control)
+        self._link.send_state(self._description())
+        self.player.start()
+
+    def close(self) -> None:
+        """Stop playing and end every thread."""
+        self.player.close()
+        if self._link is not None:
+            self._link.close()
+        self._reading.close()
+        if self._vision is not None:
+            self._vision.close()
+
+    # -- to the server ------------------------------------------------------------------------------------------------
+
+    def _description(self) -> dict[str, object]:
+        log = self._log
+        missing = {name: missing_sensors(name, log.info, log.rig) for name in ESTIMATORS}
+        return {
+            "kind": "replay",
+            "log": log.name,
+            "duration_s": log.info.duration_s,
+            "estimator": self.estimator,
+            "estimators": list(ESTIMATORS),
+            "unavailable": {name: f"This walk has {reason}." for name, reason in missing.items() if reason},
+            "anchor": self._settings.anchor,
+            "notice": self._notice(),
+            "playback": _playback(self.player.state),
+        }
+
+    def _notice(self) -> str | None:
+        """Return what a viewer should know of this log, most important first."""
+        info, fix = self._log.info, self._log.info.first_fix
+        if info.truncated:
+            return f"The recording breaks off after {info.duration_s:.0f} s; it plays to there."
+        if self._settings.anchor == "site" and fix is not None:
+            x, y, _ = SiteFrame(self._origin).site_from_geodetic(fix.lat_deg, fix.lon_deg, fix.h_ellipsoid_m)
+            if (distance_m := (x * x + y * y) ** 0.5) > FAR_M:
+                return (
+                    f"This walk was recorded {distance_m / 1000.0:,.0f} km from the site: replay it with --anchor here."
+                )
+        if not info.counts["frames"]:
+            return "This walk has no camera: the square is drawn over an empty picture."
+        if self._log.rig.camera is None:
+            return "This camera was never calibrated: a lens 60 degrees wide is assumed, so the square may not fit."
+        return None
+
+    def _show(self, shown: Shown, state: PlayerState, did_seek: bool) -> None:
+        if self._link is None:
+            return
+        pose = self._placed(shown.pose, state.estimator)
+        try:
+            message = frame_message(
+                shown.frame,
+                pose,
+                self._rig,
+                estimator=state.estimator,
+                position_s=state.position_s,
+                t_sent_ns=monotonic_ns(),
+                quarter_turns=shown.quarter_turns,
+                did_seek=did_seek,
+            )
+        except MalformedInput:
+            return  # a picture that does not decode is left out, as vision leaves it out
+        self._link.send_frame(message)
+        if pose is None:
+            return
+        self._sequence += 1
+        self._link.send_pose(pose_message(pose, seq=self._sequence, estimator=state.estimator))
+        if self._console is not None and self._rig.camera is not None:
+            if did_seek:
+                self._console.clear()
+            T_site_cam = transform(pose.wxyz_site_body, pose.p_site_m) @ self._rig.T_body_cam
+            self._console.show(T_site_cam, self._rig.camera, pose.motion_model)
+
+    def _placed(self, pose: Pose | None, estimator: str) -> Pose | None:
+        if pose is None or estimator == "truth" or self._settings.height == "gps":
+            return pose
+        return on_ground(pose, self._ground_z_m, self._eye_height_m)
+
+    def _report(self, state: PlayerState) -> None:
+        if self._link is not None:
+            notice = "Working out the pose there ..." if state.seeking else self._notice()
+            self._link.send_state({"playback": _playback(state), "estimator": state.estimator, "notice": notice})
+
+    def _control(self, request: ControlRequest) -> ControlReply:
+        try:
+            did_seek = self.player.command(request.action, request.value).result()
+        except InputError as error:
+            return ControlReply(request.request_id, ok=False, error=str(error))
+        except CancelledError:
+            return ControlReply(request.request_id, ok=False, error="The replay has ended.")
+        return ControlReply(request.request_id, ok=True, did_seek=did_seek)
+
+
+def _playback(state: PlayerState) -> dict[str, object]:
+    return {
+        "playing": state.playing,
+        "position_s": state.position_s,
+        "speed": state.speed,
+        "looping": state.looping,
+    }
+
+
+def _display_rig(log: Log) -> Rig:
+    """Return a rig that a picture can be drawn with: an unknown camera is guessed from the size of its first picture."""
+    if log.rig.camera is not None:
+        return log.rig
+    if not log.info.counts["frames"]:
+        return replace(log.rig, camera=CAMERA)
+    for measurement in log.messages(truth=False):
+        if isinstance(measurement, Frame):
+            try:
+                height_px, width_px = measurement.picture.gray().shape
+            except MalformedInput:
+                continue
+            focal_px = _GUESSED_FOCAL * max(width_px, height_px)
+            centre = ((width_px - 1) / 2.0, (height_px - 1) / 2.0)
+            return replace(log.rig, camera=CameraModel(width_px, height_px, focal_px, focal_px, *centre))
+    return replace(log.rig, camera=CAMERA)

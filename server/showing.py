@@ -1,0 +1,81 @@
+"""Server, replay and console in one process: what `agora demo` and `agora replay` run."""
+
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from assets.terrain import build_terrain
+
+from assets.site import Site
+from server.app import create_app
+from server.auth import new_token
+from server.console import Console
+from server.errors import ConsoleUnavailable
+from server.replay import Replay, ReplaySettings
+from server.site_facts import site_facts
+from server.web_server import WebServer
+from tracker.errors import InputError
+from tracker.estimator import Origin
+from tracker.log import Log
+
+
+class Showing:
+    """One log on one local server. Use it as a context manager: leaving it ends every thread and frees the ports."""
+
+    def __init__(self, site: Site, log: Log, settings: ReplaySettings, *, port: int, web: Path) -> None:
+        """Put everything together; nothing runs yet but the port is taken.
+
+        Raises:
+            InputError: The estimator cannot run on this log.
+            PortInUse: The port is taken.
+        """
+        models = site.folder / "built"
+        terrain = build_terrain(site)
+        self._console = Console(model_path=models / "roman.glb")
+        self._replay = Replay(
+            log,
+            settings,
+            site_origin=Origin(site.origin.lat_deg, site.origin.lon_deg, site.origin.h_ellipsoid_m),
+            ground_z_m=terrain.ground_z_m,
+            eye_height_m=site.eye_height_m,
+            console=self._console,
+        )
+        self._token = new_token()
+        self._session = log.name
+        app = create_app(
+            web_folder=web,
+            models_folder=models,
+            site=site_facts(site, models),
+            rig_tokens=[self._token],
+            console_url=self._start_console(),
+        )
+        self._server = WebServer(app, "127.0.0.1", port)
+
+    def _start_console(self) -> str | None:
+        try:
+            return self._console.start()
+        except ConsoleUnavailable:
+            return None  # the walk can be watched without it
+
+    @property
+    def url(self) -> str:
+        """The address of the pages, ending in a slash."""
+        return self._server.url
+
+    def __enter__(self) -> Self:
+        self._server.__enter__()
+        self._replay.start(self._server.rig_url(self._session), self._token)
+        return self
+
+    def check(self) -> None:
+        """Raise what ended the player, if anything did."""
+        error = self._replay.player.error
+        if error is not None:
+            raise InputError(f"The replay stopped: {error}.") from error
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self._replay.close()
+        self._server.close()
+        self._console.stop()

@@ -1,0 +1,206 @@
+"""`make bench`: speed beside peers, in the same run on the same data; a table, ratio first, and build/bench.json.
+
+A ratio is ours over the rival's where less is better, and ours over the target where more is; the column says which.
+"""
+
+import json
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from statistics import median
+from time import perf_counter
+
+import ahrs
+import cv2
+import imufusion
+import numpy as np
+from filterpy.kalman import KalmanFilter
+from rich.console import Console
+from rich.progress import track
+from rich.table import Table
+from vqf import VQF
+
+from tracker.attitude import Madgwick
+from tracker.estimators import ESTIMATORS, missing_sensors
+from tracker.evaluate import run
+from tracker.fusion import FusionFilter, FusionSettings, transition
+from tracker.log import Log
+from tracker.log_writer import LogWriter
+from tracker.measurements import Frame, Vector3
+from tracker.motion import CONSTANT
+from tracker.simulate import START_NS, Walk, WalkSettings, default_rig, simulate
+from tracker.vision import VisionFrontEnd
+
+ROOT = Path(__file__).parents[2]
+DEMO_LOG = ROOT / "assets" / "demo" / "state-agora-walk.mcap"
+OUT = ROOT / "build"
+REPEATS = 5
+PAPER_ESTIMATES_HZ = 4.0
+
+
+@dataclass(frozen=True)
+class Row:
+    """One comparison."""
+
+    name: str
+    value: float
+    unit: str
+    rival: str
+    ratio: float
+    """Of ours to the rival's value: for times less is better, for rates and real-time factors more."""
+
+
+def seconds_per_call(work: Callable[[], int]) -> float:
+    """Return the median over repeats of a call's time; `work` returns how many calls it made."""
+    times = []
+    for _ in range(REPEATS):
+        began = perf_counter()
+        calls = work()
+        times.append((perf_counter() - began) / calls)
+    return median(times)
+
+
+def filter_rows() -> list[Row]:
+    """The 12-state predict and update against filterpy's KalmanFilter, all of it in numpy matrices."""
+    rng = np.random.default_rng(1)
+    z = rng.normal(0.0, 1.0, (2000, 6))
+    measured = [((a, b, c), (d, e, f)) for a, b, c, d, e, f in z.tolist()]
+
+    def ours() -> int:
+        kf = FusionFilter.start(FusionSettings(), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (4.0, 4.0, 9.0))
+        for p, r in measured:
+            kf.predict(0.25, CONSTANT)
+            y_p, y_r = kf.innovation(p, r)
+            kf.update(y_p, y_r, (4.0, 4.0, 9.0))
+        return len(measured)
+
+    def theirs() -> int:
+        kf = KalmanFilter(dim_x=12, dim_z=6)
+        kf.F = transition(0.25, CONSTANT)
+        kf.H = np.zeros((6, 12))
+        kf.H[:3, :3], kf.H[3:, 6:9] = np.eye(3), np.eye(3)
+        kf.Q, kf.R = np.eye(12) * 0.01, np.diag([4.0, 4.0, 9.0, 1e-4, 1e-4, 1e-4])
+        for row in z:
+            kf.predict()
+            kf.update(row)
+        return len(z)
+
+    a, b = seconds_per_call(ours), seconds_per_call(theirs)
+    return [Row("12-state predict and update", a * 1e6, "us", f"filterpy {b * 1e6:.1f} us", a / b)]
+
+
+def attitude_rows() -> list[Row]:
+    """Madgwick's update against three libraries, one sample at a time as a rig's come."""
+    rng = np.random.default_rng(2)
+    gyro = rng.normal(0.0, 0.3, (4000, 3))
+    accel = rng.normal(0.0, 0.2, (4000, 3)) + np.array([0.0, 0.0, 9.81])
+    samples: list[tuple[Vector3, Vector3]] = [
+        ((a, b, c), (d, e, f)) for (a, b, c), (d, e, f) in zip(gyro.tolist(), accel.tolist(), strict=True)
+    ]
+
+    def ours() -> int:
+        filter_ = Madgwick()
+        for w, f in samples:
+            filter_.update(w, f, 0.004)
+        return len(samples)
+
+    def by_ahrs() -> int:
+        filter_ = ahrs.filters.Madgwick(frequency=250.0, gain=0.033)
+        q = np.array([1.0, 0.0, 0.0, 0.0])
+        for w, f in zip(gyro[:1000], accel[:1000], strict=True):
+            q = filter_.updateIMU(q, gyr=w, acc=f)
+        return 1000
+
+    def by_imufusion() -> int:
+        filter_ = imufusion.Ahrs()
+        filter_.set_sample_period(0.004)
+        degrees, g = np.degrees(gyro), accel / 9.81
+        for w, f in zip(degrees, g, strict=True):
+            filter_.update_no_magnetometer(w, f)
+        return len(degrees)
+
+    def by_vqf() -> int:
+        filter_ = VQF(0.004)
+        for w, f in zip(gyro, accel, strict=True):
+            filter_.update(w, f)
+        return len(gyro)
+
+    a = seconds_per_call(ours)
+    rivals = {
+        "ahrs (Python)": by_ahrs,
+        "imufusion (C)": by_imufusion,
+        "vqf (C++)": by_vqf,
+    }
+    return [
+        Row(f"Madgwick update against {name}", a * 1e6, "us", f"{name} {b * 1e6:.2f} us", a / b)
+        for name, b in ((name, seconds_per_call(work)) for name, work in rivals.items())
+    ]
+
+
+def vision_rows(log: Log) -> list[Row]:
+    """The camera's front end at 640x480 on one core, decoding left out, against the paper's rate."""
+    camera = log.rig.camera
+    if camera is None:
+        return []
+    frames = [m for m in log.messages(truth=False) if isinstance(m, Frame)][:150]
+    front_end = VisionFrontEnd(camera)
+    times = []
+    for frame in frames:
+        began = perf_counter()
+        motion = front_end.step(frame)
+        if motion is not None:
+            times.append(perf_counter() - began)
+    rate = 1.0 / median(times)
+    rival = f"the paper's {PAPER_ESTIMATES_HZ:g} a second"
+    return [Row("vision, 640x480, one core", rate, "estimates/s", rival, rate / PAPER_ESTIMATES_HZ)]
+
+
+def replay_rows(log: Log, what: str, target: float) -> list[Row]:
+    """How much faster than life `evaluate` runs, log reading and scoring's poses included."""
+    rows = []
+    for name in ESTIMATORS:
+        if name == "truth" or missing_sensors(name, log.info, log.rig):
+            continue
+        if name.startswith("camera") != what.startswith("with camera"):
+            continue
+        factor = median(result.duration_s / result.wall_s for result in (run(log, name) for _ in range(3)))
+        rows.append(Row(f"evaluate {name}, {what}", factor, "x real time", f"target {target:g}x", factor / target))
+    return rows
+
+
+def simulated_log(seconds: float = 120.0) -> Log:
+    """A walk without camera, IMU at 250 Hz."""
+    rig = default_rig()
+    settings = WalkSettings(seed=11, duration_s=seconds)
+    path = OUT / "bench.mcap"
+    with LogWriter(path, rig, settings.origin, t_start_ns=START_NS) as writer:
+        for measurement in simulate(Walk(settings, rig)):
+            writer.write(measurement)
+    return Log.open(path)
+
+
+def main() -> None:
+    """Run everything and print it."""
+    cv2.setNumThreads(1)
+    OUT.mkdir(exist_ok=True)
+    console = Console(width=130, highlight=False)
+    works: list[Callable[[], list[Row]]] = [
+        filter_rows,
+        attitude_rows,
+        lambda: replay_rows(simulated_log(), "without camera, 250 Hz", 20.0),
+    ]
+    if DEMO_LOG.is_file():
+        demo = Log.open(DEMO_LOG)
+        works += [lambda: vision_rows(demo), lambda: replay_rows(demo, "with camera, the demo log", 5.0)]
+    rows = [row for work in track(works, "measuring", console=Console(stderr=True), transient=True) for row in work()]
+    table = Table(title="ratio: times, less is better; rates and factors, more is better", title_justify="left")
+    for heading in ("ratio", "what", "ours", "unit", "beside"):
+        table.add_column(heading, justify="right" if heading in ("ratio", "ours") else "left")
+    for row in rows:
+        table.add_row(f"{row.ratio:.3g}", row.name, f"{row.value:.3g}", row.unit, row.rival)
+    console.print(table)
+    (OUT / "bench.json").write_text(json.dumps([asdict(row) for row in rows], indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,24 @@
+/** Elements of the page by id. */
+
+/** Return the element of that id and kind; a page without it is a mistake of ours. */
+export function element<T extends HTMLElement>(id: string, kind: new () => T): T {
+  const found = document.getElementById(id);
+  if (!(found instanceof kind)) throw new Error(`the page has no ${kind.name} #${id}`);
+  return found;
+}
+
+/** Show a text in an element, or hide the element for null. */
+export function tell(target: HTMLElement, text: string | null): void {
+  target.hidden = text === null;
+  if (text !== null && target.textContent !== text) target.textContent = text;
+}
+
+/** Whether this browser can draw; where it cannot, say so in the page. */
+export function canDraw(notice: HTMLElement): boolean {
+  if (document.createElement("canvas").getContext("webgl2")) return true;
+  tell(
+    notice,
+    "This browser cannot draw in three dimensions (WebGL 2): switch hardware acceleration on, or use another browser.",
+  );
+  return false;
+}

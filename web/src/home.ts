@@ -1,0 +1,121 @@
+/** The start page: the square as it stood, to turn about, and the walks that can be joined. */
+
+import { ACESFilmicToneMapping, Color, Fog, PerspectiveCamera, Raycaster, Vector2, WebGLRenderer } from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { canDraw, element, tell } from "./dom";
+import { loadSquare } from "./model";
+import { clockText } from "./playback";
+import { type Monument, parseSessions, parseSite, type Site } from "./protocol";
+
+const SKY = 0xbfd4e6;
+const LOOK_AGAIN_MS = 3000;
+
+async function showWalks(): Promise<void> {
+  try {
+    const sessions = parseSessions(await (await fetch("/api/sessions")).json());
+    const links = sessions.map((session) => {
+      const link = document.createElement("a");
+      link.href =
+        session.kind === "replay"
+          ? `/replay/${encodeURIComponent(session.name)}`
+          : `/ar?session=${encodeURIComponent(session.name)}`;
+      const detail = document.createElement("span");
+      detail.textContent = session.kind === "replay" ? clockText(session.duration_s) : "live";
+      link.append(session.kind === "replay" ? `Replay ${session.log ?? session.name}` : `Join ${session.name}`, detail);
+      return link;
+    });
+    element("walks", HTMLElement).replaceChildren(...links);
+  } catch {
+    // the server is away for a moment; the list stays as it was
+  }
+  window.setTimeout(() => void showWalks(), LOOK_AGAIN_MS);
+}
+
+async function showSquare(site: Site): Promise<void> {
+  const canvas = element("view", HTMLCanvasElement);
+  const renderer = new WebGLRenderer({ canvas, antialias: true });
+  renderer.toneMapping = ACESFilmicToneMapping;
+  renderer.shadowMap.enabled = true;
+  renderer.shadowMap.autoUpdate = false;
+  renderer.shadowMap.needsUpdate = true;
+  const { scene, model } = await loadSquare(site.models["roman"] ?? "/models/roman.glb", 1);
+  scene.background = new Color(SKY);
+  scene.fog = new Fog(SKY, 180, 620);
+  const camera = new PerspectiveCamera(45, 1, 0.5, 1500);
+  camera.position.set(70, 60, 105);
+  const controls = new OrbitControls(camera, canvas);
+  controls.target.set(-25, 2, 0);
+  controls.maxPolarAngle = 1.5;
+  controls.minDistance = 8;
+  controls.maxDistance = 320;
+  controls.enableDamping = false;
+  let asked = false;
+  const draw = (): void => {
+    asked = false;
+    renderer.render(scene, camera);
+  };
+  const ask = (): void => {
+    if (!asked) requestAnimationFrame(draw);
+    asked = true;
+  };
+  controls.addEventListener("change", ask);
+  const fit = (): void => {
+    renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    renderer.setSize(canvas.clientWidth, canvas.clientHeight, false);
+    camera.aspect = canvas.clientWidth / Math.max(1, canvas.clientHeight);
+    camera.updateProjectionMatrix();
+    ask();
+  };
+  new ResizeObserver(fit).observe(canvas);
+  controls.update();
+  fit();
+  nameOnHover(canvas, camera, model, site.monuments);
+}
+
+/** Name the monument under the pointer. */
+function nameOnHover(
+  canvas: HTMLCanvasElement,
+  camera: PerspectiveCamera,
+  model: Parameters<Raycaster["intersectObject"]>[0],
+  monuments: readonly Monument[],
+): void {
+  const label = element("label", HTMLElement);
+  const caster = new Raycaster();
+  const byId = new Map(monuments.map((monument) => [monument.id, monument]));
+  let busy = false;
+  canvas.onpointermove = ({ clientX, clientY, buttons }) => {
+    if (busy || buttons !== 0) return;
+    busy = true;
+    requestAnimationFrame(() => {
+      busy = false;
+      caster.setFromCamera(new Vector2((2 * clientX) / innerWidth - 1, 1 - (2 * clientY) / innerHeight), camera);
+      let node = caster.intersectObject(model)[0]?.object ?? null;
+      while (node !== null && !byId.has(node.name)) node = node.parent;
+      const monument = node === null ? undefined : byId.get(node.name);
+      tell(label, monument?.name ?? null);
+      label.style.left = `${clientX}px`;
+      label.style.top = `${clientY}px`;
+    });
+  };
+  canvas.onpointerleave = () => tell(label, null);
+}
+
+async function start(): Promise<void> {
+  const notice = element("notice", HTMLElement);
+  void showWalks();
+  if (!canDraw(notice)) return;
+  try {
+    const site = parseSite(await (await fetch("/api/site")).json());
+    element("site", HTMLElement).textContent = site.name;
+    element("credit", HTMLElement).textContent = site.attribution;
+    await showSquare(site);
+  } catch (error) {
+    tell(notice, "The model of the square could not be loaded: reload the page, or run `agora build` again.");
+    console.warn(error);
+  }
+}
+
+const ready = start();
+Object.defineProperty(globalThis, "agora", {
+  value: Object.freeze({ ready, stats: () => null, project: () => null, pose: () => null }),
+});

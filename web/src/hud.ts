@@ -1,0 +1,64 @@
+/** The figures in the corner, and the one sentence in the middle. */
+
+import { element, tell } from "./dom";
+import { headingOf } from "./frames";
+import { FrameRate, PoseAge } from "./playback";
+import type { FrameMessage } from "./wire";
+import {
+  compassPoint,
+  degreesText,
+  headingSigma,
+  horizontalSigma,
+  metresText,
+  motionColour,
+  motionWords,
+  type Situation,
+  sentenceFor,
+} from "./words";
+
+export class Hud {
+  readonly rate = new FrameRate();
+  readonly age = new PoseAge();
+  private readonly cells = Object.fromEntries(
+    ["rate", "age", "position", "heading", "motion", "estimator-now"].map((id) => [id, element(id, HTMLElement)]),
+  );
+  private readonly notice = element("notice", HTMLElement);
+  private readonly toast = element("toast", HTMLElement);
+  private toastTimer: number | undefined;
+
+  /** Show the figures of the picture that is drawn now. */
+  show(frame: FrameMessage | null, now_ms: number): void {
+    this.set("rate", `${this.rate.at(now_ms).toFixed(0)} per second`);
+    const age_ms = this.age.at(now_ms);
+    this.set("age", age_ms === null ? "–" : `${Math.round(age_ms)} ms`);
+    const pose = frame?.pose ?? null;
+    this.set("position", pose ? `± ${metresText(horizontalSigma(pose.covariance))}` : "–");
+    this.set("heading", pose ? headingText(pose.T_site_cam, pose.covariance, pose.headingKnown) : "–");
+    const model = pose?.motionModel ?? null;
+    this.set("motion", model ? `${model} · ${motionWords(model)}` : "none");
+    this.cells["motion"]?.style.setProperty("--motion", motionColour(model));
+    this.set("estimator-now", pose ? pose.estimator : "–");
+  }
+
+  /** Say what stands in the way, or nothing. */
+  say(situation: Situation): void {
+    tell(this.notice, sentenceFor(situation));
+  }
+
+  /** Show an error for a few seconds. */
+  complain(text: string): void {
+    tell(this.toast, text);
+    window.clearTimeout(this.toastTimer);
+    this.toastTimer = window.setTimeout(() => tell(this.toast, null), 6000);
+  }
+
+  private set(id: string, text: string): void {
+    const cell = this.cells[id];
+    if (cell && cell.textContent !== text) cell.textContent = text;
+  }
+}
+
+function headingText(T_site_cam: readonly number[], covariance: readonly number[], known: boolean): string {
+  if (!known) return "unknown";
+  return `${compassPoint(headingOf(T_site_cam))} ± ${degreesText(headingSigma(covariance))}`;
+}

@@ -1,0 +1,188 @@
+/**
+ * The text messages and HTTP answers: JSON to values, or one `ProtocolError`. No socket and no DOM in here.
+ */
+
+export type SessionKind = "live" | "replay";
+
+export interface Playback {
+  readonly playing: boolean;
+  readonly position_s: number;
+  readonly speed: number;
+  readonly looping: boolean;
+}
+
+export interface Session {
+  readonly name: string;
+  readonly kind: SessionKind;
+  readonly log: string | null;
+  readonly duration_s: number;
+  readonly estimator: string;
+  readonly estimators: readonly string[];
+  /** Estimators that this session cannot run, with the reason. */
+  readonly unavailable: Readonly<Record<string, string>>;
+  /** Null for a live walk. */
+  readonly playback: Playback | null;
+  readonly anchor: "site" | "here";
+  readonly notice: string | null;
+}
+
+export interface Reply {
+  readonly requestId: string;
+  readonly ok: boolean;
+  readonly error: string | null;
+  readonly didSeek: boolean;
+}
+
+export type StateMessage =
+  | { readonly type: "session"; readonly session: Session }
+  | { readonly type: "reply"; readonly reply: Reply };
+
+export interface Monument {
+  readonly id: string;
+  readonly name: string;
+  readonly height_m: number | null;
+  /** Corners on the ground, east and north of the origin, metres. */
+  readonly footprint_en: readonly (readonly [number, number])[];
+  readonly base_z_m: number;
+  readonly evidence: string | null;
+  readonly caption: string | null;
+}
+
+export interface Site {
+  readonly name: string;
+  readonly place: string;
+  readonly models: Readonly<Record<string, string>>;
+  readonly attribution: string;
+  readonly monuments: readonly Monument[];
+}
+
+/** Text that is not what it claims to be. */
+export class ProtocolError extends Error {
+  constructor(message: string) {
+    super(message);
+    this.name = "ProtocolError";
+  }
+}
+
+type Fields = Readonly<Record<string, unknown>>;
+
+/** Read a text message of the state plane; null for a type that this page does not know (a newer server's). */
+export function parseState(text: string): StateMessage | null {
+  const message = fields(parseJson(text), "message");
+  switch (message["type"]) {
+    case "hello":
+    case "state":
+      return { type: "session", session: parseSession(message["session"]) };
+    case "reply":
+      return {
+        type: "reply",
+        reply: {
+          requestId: text_(message["request_id"], ""),
+          ok: message["ok"] === true,
+          error: typeof message["error"] === "string" ? message["error"] : null,
+          didSeek: message["did_seek"] === true,
+        },
+      };
+    default:
+      return null;
+  }
+}
+
+/** Read one session. */
+export function parseSession(value: unknown): Session {
+  const session = fields(value, "session");
+  const name = session["name"];
+  if (typeof name !== "string" || name === "") throw new ProtocolError("a session without a name");
+  const kind: SessionKind = session["kind"] === "live" ? "live" : "replay";
+  return {
+    name,
+    kind,
+    log: typeof session["log"] === "string" ? session["log"] : null,
+    duration_s: Math.max(0, number(session["duration_s"], 0)),
+    estimator: text_(session["estimator"], ""),
+    estimators: list(session["estimators"]).filter((entry) => typeof entry === "string"),
+    unavailable: texts(session["unavailable"]),
+    playback: kind === "live" ? null : parsePlayback(session["playback"]),
+    anchor: session["anchor"] === "here" ? "here" : "site",
+    notice: typeof session["notice"] === "string" && session["notice"] !== "" ? session["notice"] : null,
+  };
+}
+
+/** Read the list of `GET /api/sessions`, in the server's order. */
+export function parseSessions(value: unknown): readonly Session[] {
+  return list(fields(value, "sessions")["sessions"]).map(parseSession);
+}
+
+/** Read `GET /api/site`. */
+export function parseSite(value: unknown): Site {
+  const site = fields(value, "site");
+  return {
+    name: text_(site["name"], "The ancient square"),
+    place: text_(site["place"], ""),
+    models: texts(site["models"]),
+    attribution: text_(site["attribution"], ""),
+    monuments: list(site["monuments"]).map(parseMonument),
+  };
+}
+
+function parseMonument(value: unknown): Monument {
+  const monument = fields(value, "monument");
+  const footprint_en = list(monument["footprint_en"]).map((corner): readonly [number, number] => {
+    const [east, north] = list(corner);
+    return [number(east, 0), number(north, 0)];
+  });
+  const height = monument["height_m"] ?? monument["height"];
+  const caption = monument["caption"];
+  return {
+    id: text_(monument["id"], ""),
+    name: text_(monument["name"], text_(monument["id"], "unnamed")),
+    height_m: typeof height === "number" && Number.isFinite(height) ? height : null,
+    footprint_en,
+    base_z_m: number(monument["base_z_m"] ?? monument["base_z"], 0),
+    evidence: typeof monument["evidence"] === "string" ? monument["evidence"] : null,
+    caption: typeof caption === "string" ? caption : null,
+  };
+}
+
+function parsePlayback(value: unknown): Playback {
+  const playback = typeof value === "object" && value !== null ? fields(value, "playback") : {};
+  return {
+    playing: playback["playing"] === true,
+    position_s: Math.max(0, number(playback["position_s"], 0)),
+    speed: number(playback["speed"], 1),
+    looping: playback["looping"] === true,
+  };
+}
+
+function parseJson(text: string): unknown {
+  try {
+    return JSON.parse(text);
+  } catch (error) {
+    throw new ProtocolError(`a text message that is no JSON: ${String(error)}`);
+  }
+}
+
+function fields(value: unknown, what: string): Fields {
+  if (typeof value !== "object" || value === null || Array.isArray(value))
+    throw new ProtocolError(`the ${what} is no JSON object`);
+  return value as Fields;
+}
+
+function list(value: unknown): readonly unknown[] {
+  return Array.isArray(value) ? value : [];
+}
+
+function number(value: unknown, otherwise: number): number {
+  return typeof value === "number" && Number.isFinite(value) ? value : otherwise;
+}
+
+function text_(value: unknown, otherwise: string): string {
+  return typeof value === "string" ? value : otherwise;
+}
+
+function texts(value: unknown): Readonly<Record<string, string>> {
+  if (typeof value !== "object" || value === null) return {};
+  return Object.fromEntries(
+    Object.entries(value).filter((entry): entry is [string, string] => typeof entry[1] === "string"),
+  );
+}

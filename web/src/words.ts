@@ -1,0 +1,118 @@
+/**
+ * What the page says to a visitor: one plain sentence, and the numbers in words and units. Pure.
+ */
+
+export type Connection = "connecting" | "open" | "lost" | "refused" | "no session";
+
+export interface Situation {
+  readonly connection: Connection;
+  readonly kind: "live" | "replay";
+  readonly playing: boolean;
+  /** Since the last picture; null before the first. */
+  readonly sincePicture_ms: number | null;
+  /** Since this page was opened. */
+  readonly sinceOpened_ms: number;
+  readonly hasPose: boolean;
+  readonly headingKnown: boolean;
+  /** The server's own notice, if any. */
+  readonly notice: string | null;
+  readonly modelFailed: boolean;
+}
+
+const QUIET_AFTER_MS = 2500;
+
+/** Return what stands in the visitor's way, most pressing first, or null when all is well. */
+export function sentenceFor(s: Situation): string | null {
+  if (s.connection === "refused")
+    return "This page may not see the pictures: open it with the link that the rig's owner gives you.";
+  if (s.connection === "no session")
+    return "Nobody is walking just now. This page starts by itself when a walk begins.";
+  if (s.connection === "lost") return "The connection is lost. Trying again …";
+  if (s.connection === "connecting") return s.sinceOpened_ms > QUIET_AFTER_MS ? "Connecting to the walk …" : null;
+  if (s.sincePicture_ms === null && s.sinceOpened_ms > QUIET_AFTER_MS) return noPictures(s);
+  if (s.sincePicture_ms !== null && s.sincePicture_ms > QUIET_AFTER_MS && s.playing) return noPictures(s);
+  if (s.modelFailed) return "The model of the square could not be loaded: reload the page, or run `agora build` again.";
+  if (s.sincePicture_ms !== null && !s.hasPose)
+    return "Finding out where you are: the square appears when the position is known.";
+  if (s.hasPose && !s.headingKnown) return "Walk a few steps so that I can find north.";
+  return s.notice;
+}
+
+function noPictures(s: Situation): string {
+  if (s.kind === "live") return "No pictures are arriving: is the rig running?";
+  return s.playing ? "No pictures here: this part of the recording has none." : "Press play to start the walk.";
+}
+
+const COEFFICIENT_WORDS: readonly string[] = ["held", "steady", "doubled"];
+
+/** Return `P1R2` in words: "position steady, turning doubled". */
+export function motionWords(model: string | null): string {
+  const match = /^P([012])R([012])$/.exec(model ?? "");
+  if (!match) return "no motion model";
+  const position = COEFFICIENT_WORDS[Number(match[1])] ?? "";
+  const turning = COEFFICIENT_WORDS[Number(match[2])] ?? "";
+  return `position ${position}, turning ${turning}`;
+}
+
+/** Three lightnesses for position, three hues for turning; told apart without hue, and never the only carrier. */
+const MOTION_COLOURS: Readonly<Record<string, string>> = {
+  P0R0: "#9c8f7c",
+  P0R1: "#8fa37e",
+  P0R2: "#a88f9e",
+  P1R0: "#c9a36a",
+  P1R1: "#dba24f",
+  P1R2: "#d98a6a",
+  P2R0: "#f0c987",
+  P2R1: "#f2b25c",
+  P2R2: "#ee7f55",
+};
+
+/** Return the colour of a motion model. */
+export function motionColour(model: string | null): string {
+  return MOTION_COLOURS[model ?? ""] ?? "#7d756a";
+}
+
+/** Return metres in the precision that means something: "4 cm", "0.8 m", "12 m". */
+export function metresText(metres: number): string {
+  if (!Number.isFinite(metres)) return "–";
+  if (metres < 0.095) return `${Math.max(0, Math.round(metres * 100))} cm`;
+  return metres < 9.95 ? `${metres.toFixed(1)} m` : `${Math.round(metres)} m`;
+}
+
+/** Return an angle given in radians as degrees: "0.4°", "12°". */
+export function degreesText(angle_rad: number): string {
+  if (!Number.isFinite(angle_rad)) return "–";
+  const degrees = (angle_rad * 180) / Math.PI;
+  if (degrees > 180) return "unknown";
+  return degrees < 9.95 ? `${degrees.toFixed(1)}°` : `${Math.round(degrees)}°`;
+}
+
+const POINTS: readonly string[] = [
+  "north",
+  "north-east",
+  "east",
+  "south-east",
+  "south",
+  "south-west",
+  "west",
+  "north-west",
+];
+
+/** Return a heading, clockwise from north, as the nearest of eight points. */
+export function compassPoint(heading_rad: number): string {
+  const eighth = Math.round((heading_rad / (2 * Math.PI)) * 8);
+  return POINTS[((eighth % 8) + 8) % 8] ?? "north";
+}
+
+/** Return the larger half-axis of the 1-sigma ellipse on the ground, metres, from a 6 x 6 covariance. */
+export function horizontalSigma(covariance: readonly number[]): number {
+  const [ee = 0, en = 0] = covariance;
+  const nn = covariance[7] ?? 0;
+  const middle = (ee + nn) / 2;
+  return Math.sqrt(Math.max(0, middle + Math.hypot((ee - nn) / 2, en)));
+}
+
+/** Return the 1-sigma of the heading, radians, from a 6 x 6 covariance (rotation about up, site axes). */
+export function headingSigma(covariance: readonly number[]): number {
+  return Math.sqrt(Math.max(0, covariance[35] ?? 0));
+}

@@ -1,0 +1,42 @@
+import { fileURLToPath } from "node:url";
+import type { Plugin } from "vite";
+import { defineConfig } from "vitest/config";
+
+const here = (path: string): string => fileURLToPath(new URL(path, import.meta.url));
+
+/** Serve `/ar` and `/replay/NAME` during development as the server does in use. */
+function pages(): Plugin {
+  return {
+    name: "agora-pages",
+    configureServer(server) {
+      server.middlewares.use((request, _response, next) => {
+        if (/^\/(ar|replay\/[^/]+)\/?(\?|$)/.test(request.url ?? "")) request.url = "/ar.html";
+        next();
+      });
+    },
+  };
+}
+
+const program = "127.0.0.1:8000"; // `agora demo`, when the pages are developed beside it
+
+export default defineConfig({
+  base: "/",
+  plugins: [pages()],
+  build: {
+    target: "es2022",
+    chunkSizeWarningLimit: 900, // three.js is most of it
+    rolldownOptions: { input: { index: here("index.html"), ar: here("ar.html") } },
+  },
+  server: {
+    proxy: {
+      "/api": `http://${program}`,
+      "/models": `http://${program}`,
+      "/ws": { target: `ws://${program}`, ws: true },
+    },
+  },
+  test: {
+    globals: true, // tests/web stands outside this folder, where no package can be imported by name
+    dir: here("../tests/web"),
+    environment: "node",
+  },
+});
