@@ -20,7 +20,7 @@ from assets.site import Site, load_site
 from server.errors import ServerError
 from tracker.errors import InputError
 from tracker.estimator import Origin
-from tracker.estimators import ESTIMATORS
+from tracker.estimators import ESTIMATORS, check_name
 from tracker.fuzzy import INDICES, LEVELS, NEXT_INDEX, rules_by_name
 
 ROOT = Path(__file__).parents[1]
@@ -96,6 +96,8 @@ def _show(
     from tracker.log import Log
 
     site = load_site(site_folder)
+    if estimator is not None:
+        check_name(estimator)
     log = Log.open(path)
     settings = ReplaySettings(estimator, anchor, height, looping)
     _require_built(site)
@@ -106,7 +108,7 @@ def _show(
         out.print(f"Agora is at {showing.url}", soft_wrap=True)
         sys.stdout.flush()
         if browser:
-            webbrowser.open(f"{showing.url}replay/{log.name}")
+            webbrowser.open(showing.page)
         while not stop.wait(0.2):
             showing.check()
 
@@ -160,7 +162,6 @@ def simulate(
 ) -> None:
     """Simulate a visitor's walk across the site: IMU, magnetometer, GPS, camera and full truth, the same for the same seed."""
     from assets.terrain import build_terrain
-
     from server.simulation import write_walk
     from tracker.choreography import DATASET_DURATION_S
     from tracker.simulate import WalkSettings
@@ -244,5 +245,5 @@ def main() -> NoReturn:
         app(standalone_mode=True)
     except (InputError, AssetError, ServerError) as error:
         err.print(f"agora: {error}", soft_wrap=True, markup=False)
-        sys.exit(3 if type(error).__name__ == "GraphicsMissing" else 2)
+        sys.exit(getattr(error, "exit_code", 2))
     sys.exit(0)

@@ -2,7 +2,7 @@
 
 ServerError
 ├── MalformedMessage     a message on a socket that is not what the wire format says
-├── PortInUse            the port to listen on is taken (the command line exits 3)
+├── PortInUse            the port to listen on is taken (the command line exits 2)
 ├── AddressUnavailable   the address to listen on is not this machine's
 ├── UnknownSession       no session of that name
 ├── ServerFull           as many viewers or sessions as the server will take

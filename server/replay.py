@@ -113,6 +113,11 @@ class Replay:
         self._link.send_state(self._description())
         self.player.start()
 
+    @property
+    def error(self) -> BaseException | None:
+        """What ended the player or its link, if anything did."""
+        return self.player.error or (self._link.refused if self._link else None)
+
     def close(self) -> None:
         """Stop playing and end every thread."""
         self.player.close()

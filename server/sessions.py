@@ -155,6 +155,11 @@ class Session:
             self._relay_reply(ControlReply(key, ok=False, error="The rig left before it answered."))
 
 
+def session_name(text: str) -> str:
+    """Return the name that a session of this title has: what a name cannot hold becomes a dash."""
+    return re.sub(r"[^A-Za-z0-9._-]+", "-", text).strip("._-")[:64] or "walk"
+
+
 class Sessions:
     """All sessions, oldest first."""
 

@@ -4,14 +4,14 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from assets.terrain import build_terrain
-
 from assets.site import Site
+from assets.terrain import build_terrain
 from server.app import create_app
 from server.auth import new_token
 from server.console import Console
 from server.errors import ConsoleUnavailable
 from server.replay import Replay, ReplaySettings
+from server.sessions import session_name
 from server.site_facts import site_facts
 from server.web_server import WebServer
 from tracker.errors import InputError
@@ -41,7 +41,7 @@ class Showing:
             console=self._console,
         )
         self._token = new_token()
-        self._session = log.name
+        self._session = session_name(log.name)
         app = create_app(
             web_folder=web,
             models_folder=models,
@@ -62,14 +62,19 @@ class Showing:
         """The address of the pages, ending in a slash."""
         return self._server.url
 
+    @property
+    def page(self) -> str:
+        """The address of the replay's own page."""
+        return f"{self.url}replay/{self._session}"
+
     def __enter__(self) -> Self:
         self._server.__enter__()
         self._replay.start(self._server.rig_url(self._session), self._token)
         return self
 
     def check(self) -> None:
-        """Raise what ended the player, if anything did."""
-        error = self._replay.player.error
+        """Raise what ended the replay, if anything did."""
+        error = self._replay.error
         if error is not None:
             raise InputError(f"The replay stopped: {error}.") from error
 

@@ -9,8 +9,8 @@ from typing import Literal
 
 import cv2
 import numpy as np
-from assets.render import Renderer
 
+from assets.render import Renderer
 from tracker.errors import InputError
 from tracker.gait import Ground
 from tracker.log_writer import LogWriter
@@ -82,22 +82,13 @@ def _pictures(walk: Walk, model: Path, kept: Path, progress: Progress) -> Iterat
         raise ValueError("a rig with a camera")
     kept.mkdir(parents=True, exist_ok=True)
     times = walk.frame_times()
-    with Renderer(
-        model,
-        camera.width_px,
-        camera.height_px,
-        fx_px=camera.fx_px,
-        fy_px=camera.fy_px,
-        cx_px=camera.cx_px,
-        cy_px=camera.cy_px,
-        distortion_model=camera.distortion_model,
-        distortion=camera.distortion,
-    ) as renderer:
+    lens = (camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px, camera.distortion_model, camera.distortion)
+    with Renderer(model, camera.width_px, camera.height_px) as renderer:
         for frame_id, (t_ns, t_recv_ns) in enumerate(times):
             file = kept / f"{frame_id:06d}.png"
             bgr = cv2.imread(str(file)) if file.is_file() else None
             if bgr is None:
-                bgr = renderer.render(walk.T_site_cam(t_ns))
+                bgr = renderer.render(walk.T_site_cam(t_ns), *lens)
                 cv2.imwrite(str(file), bgr)
             yield Frame(t_ns, t_recv_ns, frame_id, ArrayPicture(_noisy(np.asarray(bgr, np.uint8), walk, frame_id)))
             progress((frame_id + 1) / len(times))

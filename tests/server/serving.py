@@ -12,6 +12,7 @@ from websockets.sync.client import connect
 from websockets.sync.connection import Connection
 
 from server.app import create_app
+from server.showing import Showing
 from server.web_server import WebServer
 
 TOKEN = "the-rig's-token"
@@ -40,7 +41,7 @@ def rig(server: WebServer, session: str = "walk", token: str = TOKEN) -> Connect
     )
 
 
-def viewer(server: WebServer, session: str = "walk", **options: Any) -> Connection:
+def viewer(server: WebServer | Showing, session: str = "walk", **options: Any) -> Connection:
     """Connect as a viewer."""
     url = server.url.replace("http", "ws", 1) + f"ws/view/{session}"
     return connect(url, compression=None, proxy=None, close_timeout=0.5, **options)

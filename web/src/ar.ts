@@ -188,9 +188,9 @@ class Page {
   private controls(): void {
     const canvas = element("view", HTMLCanvasElement);
     const past = element("past", HTMLInputElement);
-    const fit = (): void => this.composite.resize(canvas.clientWidth, canvas.clientHeight, window.devicePixelRatio);
-    new ResizeObserver(fit).observe(canvas);
-    fit();
+    const fill = (): void => this.composite.resize(canvas.clientWidth, canvas.clientHeight, window.devicePixelRatio);
+    new ResizeObserver(fill).observe(canvas);
+    fill();
     past.oninput = () => this.setPast(Number(past.value) / 100);
     this.setPast(Number(past.value) / 100);
     window.addEventListener("keydown", ({ key, ctrlKey, metaKey }) => {

@@ -59,16 +59,16 @@ async function showSquare(site: Site): Promise<void> {
     asked = true;
   };
   controls.addEventListener("change", ask);
-  const fit = (): void => {
+  const fill = (): void => {
     renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     renderer.setSize(canvas.clientWidth, canvas.clientHeight, false);
     camera.aspect = canvas.clientWidth / Math.max(1, canvas.clientHeight);
     camera.updateProjectionMatrix();
     ask();
   };
-  new ResizeObserver(fit).observe(canvas);
+  new ResizeObserver(fill).observe(canvas);
   controls.update();
-  fit();
+  fill();
   nameOnHover(canvas, camera, model, site.monuments);
 }
 

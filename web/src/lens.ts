@@ -26,6 +26,8 @@ export interface Lens {
 const WIDEST = 10;
 const NEWTON_STEPS = 40;
 const NEWTON_DONE = 1e-13;
+/** Of the search that Newton's starts from: a thousandth of the domain is near enough. */
+const HALVINGS = 12;
 
 /** Return the bent radius over the ideal one, `r` from the axis; tangential terms aside. */
 function radialGain(lens: Lens, r2: number): number {
@@ -72,11 +74,7 @@ export function domainRadius(lens: Lens): number {
 /** Return the ideal coordinates that the lens bends to these, or null where none do. */
 export function unbend(lens: Lens, bent: Pair, radius = domainRadius(lens)): Pair | null {
   if (lens.model === "none") return bent;
-  let [x, y] = bent;
-  if (lens.model === "equidistant") {
-    const limit = radius / Math.hypot(x, y);
-    if (limit < 1) [x, y] = [x * limit, y * limit];
-  }
+  let [x, y] = radialGuess(lens, bent, radius);
   for (let i = 0; i < NEWTON_STEPS; i++) {
     const [bx, by] = bend(lens, [x, y]);
     const dx = bx - bent[0];
@@ -87,6 +85,19 @@ export function unbend(lens: Lens, bent: Pair, radius = domainRadius(lens)): Pai
   const [bx, by] = bend(lens, [x, y]);
   const close = Math.hypot(bx - bent[0], by - bent[1]) < 1e-9;
   return close && Math.hypot(x, y) <= radius ? [x, y] : null;
+}
+
+/** Return where `unbend` starts: exact but for the tangential terms, by halving, since radii only grow inside the domain. */
+function radialGuess(lens: Lens, bent: Pair, radius: number): Pair {
+  const wanted = Math.hypot(...bent);
+  let [low, high] = [0, radius];
+  for (let i = 0; i < HALVINGS; i++) {
+    const middle = (low + high) / 2;
+    if (middle * radialGain(lens, middle * middle) < wanted) low = middle;
+    else high = middle;
+  }
+  const scale = wanted > 0 ? high / wanted : 0;
+  return [bent[0] * scale, bent[1] * scale];
 }
 
 /** One step with differences for derivatives, kept inside the domain so that it cannot jump past the fold. */

@@ -1,0 +1,216 @@
+"""A log shown: what viewers get of it, what they may ask for, and that nothing is left behind."""
+
+import json
+import threading
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import httpx
+import numpy as np
+import pytest
+from websockets.sync.connection import Connection
+
+from assets.site import load_site
+from assets.terrain import build_terrain
+from server.cli import SITE
+from server.replay import Replay, ReplaySettings
+from server.sessions import session_name
+from server.showing import Showing
+from server.wire import FrameMeta, decode_frame, is_frame
+from tests.server.serving import HELD_S, until, viewer
+from tests.walks import write_walk
+from tracker.errors import MissingSensor, UnknownEstimator
+from tracker.estimator import Origin
+from tracker.estimators import ESTIMATORS
+from tracker.log import Log
+from tracker.measurements import Frame
+from tracker.simulate import AGORA_ORIGIN
+
+ELSEWHERE = Origin(-43.5, 172.6, 20.0)
+EYES_M = 1.65
+
+
+@pytest.fixture(scope="module")
+def wall(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Eight seconds with pictures."""
+    return write_walk(tmp_path_factory.mktemp("logs") / "wall.mcap", 8.0, pictures=True)
+
+
+@pytest.fixture(scope="module")
+def dark(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Six seconds without."""
+    return write_walk(tmp_path_factory.mktemp("logs") / "dark.mcap", 6.0)
+
+
+class Watcher:
+    """A viewer that acknowledges every frame and keeps what it was told."""
+
+    def __init__(self, connection: Connection) -> None:
+        self._connection = connection
+        self._asked = 0
+        self._unseen: deque[FrameMeta] = deque()
+        self.session: dict[str, Any] = {}
+        self._replies: dict[str, dict[str, Any]] = {}
+
+    def frames(self, count: int = 10_000) -> Iterator[FrameMeta]:
+        """Yield the next frames, those first that came while a reply was waited for."""
+        for _ in range(count):
+            while not self._unseen:
+                self._receive()
+            yield self._unseen.popleft()
+
+    def ask(self, action: str, value: object = None) -> dict[str, Any]:
+        """Send a request and return its reply."""
+        self._asked += 1
+        key = str(self._asked)
+        self._unseen.clear()
+        self._connection.send(json.dumps({"type": "control", "request_id": key, "action": action, "value": value}))
+        while key not in self._replies:
+            self._receive()
+        return self._replies[key]
+
+    def frame_where(self, condition: Callable[[FrameMeta], bool]) -> FrameMeta:
+        """Return the next frame of which something is true."""
+        return next(meta for meta in self.frames() if condition(meta))
+
+    def _receive(self) -> None:
+        message = self._connection.recv(HELD_S)
+        if isinstance(message, bytes):
+            if is_frame(message):
+                meta, _ = decode_frame(message)
+                self._connection.send(json.dumps({"type": "ack", "frame_id": meta.frame_id}))
+                self._unseen.append(meta)
+            return
+        heard = json.loads(message)
+        if heard["type"] == "reply":
+            self._replies[heard["request_id"]] = heard
+        else:
+            self.session = heard["session"]
+
+
+@contextmanager
+def watching(path: Path, settings: ReplaySettings, folder: Path) -> Iterator[Watcher]:
+    """Show a log on a server of its own, and watch it."""
+    site = replace(load_site(SITE), folder=folder)
+    with Showing(site, Log.open(path), settings, port=0, web=folder) as shown:
+        until(lambda: httpx.get(f"{shown.url}api/sessions").json()["sessions"])
+        with viewer(shown, session_name(path.stem)) as connection:
+            yield Watcher(connection)
+
+
+def replay_of(path: Path, settings: ReplaySettings) -> Replay:
+    return Replay(Log.open(path), settings, site_origin=AGORA_ORIGIN, ground_z_m=lambda e, n: 0.25, eye_height_m=EYES_M)
+
+
+def test_every_frame_carries_the_pose_of_its_own_picture(wall: Path, tmp_path: Path) -> None:
+    settings = ReplaySettings(estimator="gps-imu/famm", looping=True)
+    with watching(wall, settings, tmp_path) as watcher:
+        posed = [meta for meta in watcher.frames(60) if meta.pose_valid]
+        stamps = {frame.frame_id: frame.t_ns for frame in Log.open(wall).messages() if isinstance(frame, Frame)}
+        assert len(posed) > 30
+        assert all(meta.t_capture_ns == stamps[meta.frame_id] for meta in posed)
+        assert {meta.estimator for meta in posed} == {"gps-imu/famm"}
+        assert watcher.session["log"] == "wall"
+        assert watcher.session["estimators"] == list(ESTIMATORS)
+        assert watcher.session["unavailable"] == {}
+        assert watcher.session["notice"] is None
+
+
+def test_a_viewer_pauses_seeks_and_changes_the_estimator(wall: Path, tmp_path: Path) -> None:
+    with watching(wall, ReplaySettings(), tmp_path) as watcher:
+        first = watcher.frame_where(lambda meta: meta.pose_valid)
+        assert first.estimator == "camera-gps-imu/famm"
+        assert watcher.ask("pause")["ok"]
+        assert watcher.session["playback"]["playing"] is False
+        reply = watcher.ask("seek", 6.0)
+        assert (reply["ok"], reply["did_seek"]) == (True, True)
+        found = watcher.frame_where(lambda meta: meta.did_seek)
+        assert found.position_s == pytest.approx(6.0, abs=0.1)
+        reply = watcher.ask("estimator", "truth")
+        assert reply["ok"]
+        again = watcher.frame_where(lambda meta: meta.estimator == "truth")
+        assert again.is_truth
+        assert again.frame_id == found.frame_id
+        assert watcher.ask("speed", 4.0)["ok"]
+        assert watcher.ask("play")["ok"]
+        later = watcher.frame_where(lambda meta: meta.frame_id > again.frame_id)
+        assert later.estimator == "truth"
+        assert watcher.session["playback"]["speed"] == 4.0
+
+
+@pytest.mark.parametrize(
+    ("action", "value", "word"),
+    [
+        ("estimator", "nonsense", "gps-imu/famm"),
+        ("estimator", "camera-gps-imu/famm", "no camera"),
+        ("seek", -1.0, "position"),
+        ("seek", 1e6, "position"),
+        ("speed", 0.0, "speed"),
+        ("speed", "fast", "speed"),
+    ],
+)
+def test_a_request_that_makes_no_sense_gets_a_sentence_and_changes_nothing(
+    dark: Path, tmp_path: Path, action: str, value: object, word: str
+) -> None:
+    with watching(dark, ReplaySettings(looping=True), tmp_path) as watcher:
+        watcher.frame_where(lambda meta: meta.pose_valid)
+        reply = watcher.ask(action, value)
+        assert not reply["ok"]
+        assert word in reply["error"]
+        after = watcher.frame_where(lambda meta: meta.pose_valid)
+        assert after.estimator == "gps-imu/famm"
+        assert watcher.session["playback"]["speed"] == 1.0
+
+
+def test_a_walk_without_camera_is_shown_over_empty_pictures(dark: Path, tmp_path: Path) -> None:
+    with watching(dark, ReplaySettings(looping=True), tmp_path) as watcher:
+        meta = watcher.frame_where(lambda meta: meta.pose_valid)
+        assert (meta.camera.width_px, meta.camera.height_px) == (640, 480)
+        assert "no camera" in watcher.session["notice"]
+        assert set(watcher.session["unavailable"]) == {"camera-gps-imu/cmm", "camera-gps-imu/famm"}
+
+
+def test_nothing_is_left_behind(wall: Path, tmp_path: Path) -> None:
+    before = set(threading.enumerate())
+    with watching(wall, ReplaySettings(), tmp_path) as watcher:
+        list(watcher.frames(3))
+    until(lambda: set(threading.enumerate()) <= before)
+
+
+def test_an_estimator_that_cannot_run_is_refused_before_anything_starts(dark: Path) -> None:
+    before = threading.active_count()
+    with pytest.raises(MissingSensor, match="no camera"):
+        replay_of(dark, ReplaySettings(estimator="camera-gps-imu/famm"))
+    with pytest.raises(UnknownEstimator):
+        replay_of(dark, ReplaySettings(estimator="nonsense"))
+    assert threading.active_count() == before
+
+
+def test_a_walk_from_elsewhere_says_how_to_see_it(tmp_path: Path) -> None:
+    path = write_walk(tmp_path / "christchurch.mcap", 3.0, origin=ELSEWHERE)
+    with watching(path, ReplaySettings(looping=True), tmp_path) as watcher:
+        next(watcher.frames())
+        assert "--anchor here" in watcher.session["notice"]
+
+
+def test_anchored_here_the_walk_begins_at_the_origin_with_its_feet_on_the_ground(tmp_path: Path) -> None:
+    path = write_walk(tmp_path / "christchurch.mcap", 6.0, origin=ELSEWHERE)
+    with watching(path, ReplaySettings(anchor="here", looping=True), tmp_path) as watcher:
+        first = watcher.frame_where(lambda meta: meta.pose_valid)
+        assert np.hypot(*first.T_site_cam[:2, 3]) < 6.0
+        ground_z_m = build_terrain(load_site(SITE)).ground_z_m
+        height_m = first.T_site_cam[2, 3] - ground_z_m(*first.T_site_cam[:2, 3])
+        assert height_m == pytest.approx(EYES_M, abs=0.1)
+        assert "camera" in watcher.session["notice"]
+
+
+def test_a_name_that_a_session_cannot_have_is_made_into_one(tmp_path: Path) -> None:
+    path = write_walk(tmp_path / "Meine Tour, März (2).mcap", 3.0)
+    with watching(path, ReplaySettings(looping=True), tmp_path) as watcher:
+        next(watcher.frames())
+        assert watcher.session["name"] == "Meine-Tour-M-rz-2"
+        assert watcher.session["log"] == path.stem
