@@ -9,6 +9,8 @@ COLUMN_SIDES = 12
 ROOF_SLOPE = np.tan(np.radians(17.5))
 EAVE_M = 0.5
 """How far a roof stands out."""
+STEPS_OUT_M = 1.0
+"""How far the steps of a temple may stand out from its stylobate."""
 
 
 def column(diameter_m: float, height_m: float, plain: bool = False) -> Shape:
@@ -16,7 +18,12 @@ def column(diameter_m: float, height_m: float, plain: bool = False) -> Shape:
     radius = diameter_m / 2.0
     base = 0.0 if plain else 0.35 * diameter_m
     capital = 0.5 * diameter_m if plain else 0.8 * diameter_m
-    profile = [(1.0, base), (0.97, base + 0.35 * height_m), (0.84, height_m - capital), (1.28, height_m - 0.4 * capital)]
+    profile = [
+        (1.0, base),
+        (0.97, base + 0.35 * height_m),
+        (0.84, height_m - capital),
+        (1.28, height_m - 0.4 * capital),
+    ]
     if not plain:
         profile = [(1.3, 0.5 * base), (1.3, 0.8 * base), *profile]
     shape = Shape()
@@ -52,17 +59,24 @@ def ring(x0: float, x1: float, y0: float, y1: float, across: int, along: int) ->
     return np.array(places)
 
 
-def steps(shape: Shape, x0: float, x1: float, y0: float, y1: float, rise_m: float, count: int, tread_m: float = 0.35) -> None:
-    """Add a platform whose top is at z = 0 with `count` steps down all around."""
+def steps(shape: Shape, x0: float, x1: float, y0: float, y1: float, rise_m: float, count: int) -> None:
+    """Add a platform whose top is at z = 0 with `count` steps down all around; they stand out less than `STEPS_OUT_M`."""
     for i in range(count):
-        out, top = i * tread_m, -i * rise_m / count
+        out, top = i * min(0.33, STEPS_OUT_M / count), -i * rise_m / count
         shape.box("marble", (x0 - out, y0 - out, -rise_m - 1.0), (x1 + out, y1 + out, top), 1.0 - 0.03 * (i % 2))
 
 
-def gable(shape: Shape, x0: float, x1: float, y0: float, y1: float, eave_m: float, ridge_m: float, wall: str = "marble") -> None:
+def gable(
+    shape: Shape, x0: float, x1: float, y0: float, y1: float, eave_m: float, ridge_m: float, wall: str = "marble"
+) -> None:
     """Add a tiled roof with its ridge along x, gables of `wall` at both ends and a cornice all around."""
     middle, out = (y0 + y1) / 2.0, EAVE_M
-    ends = np.array([[(x1, y0, eave_m), (x1, y1, eave_m), (x1, middle, ridge_m)], [(x0, y1, eave_m), (x0, y0, eave_m), (x0, middle, ridge_m)]])
+    ends = np.array(
+        [
+            [(x1, y0, eave_m), (x1, y1, eave_m), (x1, middle, ridge_m)],
+            [(x0, y1, eave_m), (x0, y0, eave_m), (x0, middle, ridge_m)],
+        ]
+    )
     shape.polygons(wall, ends, 0.92)
     drop = out * (ridge_m - eave_m) / (middle - y0)
     low, a, b = eave_m - drop, x0 - out, x1 + out
@@ -71,8 +85,18 @@ def gable(shape: Shape, x0: float, x1: float, y0: float, y1: float, eave_m: floa
     shape.polygons("tiles", np.array([south, north]))
     shape.polygons("wood", np.array([south[::-1], north[::-1]]) - (0.0, 0.0, 0.12), 0.7)
     for x in (a, b):
-        rim = [(x, y0 - out, low - 0.22), (x, middle, ridge_m - 0.22), (x, middle, ridge_m + 0.08), (x, y0 - out, low + 0.08)]
-        other = [(x, middle, ridge_m - 0.22), (x, y1 + out, low - 0.22), (x, y1 + out, low + 0.08), (x, middle, ridge_m + 0.08)]
+        rim = [
+            (x, y0 - out, low - 0.22),
+            (x, middle, ridge_m - 0.22),
+            (x, middle, ridge_m + 0.03),
+            (x, y0 - out, low + 0.08),
+        ]
+        other = [
+            (x, middle, ridge_m - 0.22),
+            (x, y1 + out, low - 0.22),
+            (x, y1 + out, low + 0.08),
+            (x, middle, ridge_m + 0.03),
+        ]
         shape.polygons("marble", np.array([rim, other]))
     for y in (y0 - out, y1 + out):
         shape.box("marble", (a, y - 0.04, low - 0.3), (b, y + 0.04, low + 0.06))
@@ -85,7 +109,9 @@ def lean_to(shape: Shape, x0: float, x1: float, y_low: float, y_high: float, z_l
     shape.polygons("tiles", corners)
     shape.polygons("wood", corners[::-1] - (0.0, 0.0, 0.12), 0.7)
     for x in (x0, x1):
-        shape.polygons("plaster", [(x, y_low, z_low - 0.4), (x, y_high, z_low - 0.4), (x, y_high, z_high), (x, y_low, z_low)], 0.9)
+        shape.polygons(
+            "plaster", [(x, y_low, z_low - 0.4), (x, y_high, z_low - 0.4), (x, y_high, z_high), (x, y_low, z_low)], 0.9
+        )
 
 
 def beam(shape: Shape, x0: float, x1: float, y0: float, y1: float, z_m: float, height_m: float) -> None:
@@ -98,7 +124,9 @@ def beam(shape: Shape, x0: float, x1: float, y0: float, y1: float, z_m: float, h
     shape.box("marble", (x0 - lip, y0 - lip, z_m + 2 * third), (x1 + lip, y1 + lip, z_m + height_m))
 
 
-def frame(shape: Shape, x0: float, x1: float, y0: float, y1: float, thick_m: float, z_m: float, height_m: float) -> None:
+def frame(
+    shape: Shape, x0: float, x1: float, y0: float, y1: float, thick_m: float, z_m: float, height_m: float
+) -> None:
     """Add an entablature on all four sides of a rectangle of centre lines."""
     t = thick_m / 2.0
     for y in (y0, y1):
@@ -107,7 +135,9 @@ def frame(shape: Shape, x0: float, x1: float, y0: float, y1: float, thick_m: flo
         beam(shape, x - t, x + t, y0 + t, y1 - t, z_m, height_m)
 
 
-def walls(shape: Shape, material: str, x0: float, x1: float, y0: float, y1: float, z0: float, z1: float, thick_m: float = 0.7) -> None:
+def walls(
+    shape: Shape, material: str, x0: float, x1: float, y0: float, y1: float, z0: float, z1: float, thick_m: float = 0.7
+) -> None:
     """Add four walls around a rectangle."""
     t = thick_m
     low = np.array([(x0, y0, z0), (x0, y1 - t, z0), (x0, y0 + t, z0), (x1 - t, y0 + t, z0)])
@@ -115,7 +145,17 @@ def walls(shape: Shape, material: str, x0: float, x1: float, y0: float, y1: floa
     shape.boxes(material, low, high)
 
 
-def arch(shape: Shape, material: str, centre_x: float, span_m: float, y0: float, y1: float, spring_m: float, top_m: float, sides: int = 14) -> None:
+def arch(
+    shape: Shape,
+    material: str,
+    centre_x: float,
+    span_m: float,
+    y0: float,
+    y1: float,
+    spring_m: float,
+    top_m: float,
+    sides: int = 14,
+) -> None:
     """Add what stands over a round opening from y0 to y1: spandrels to `top_m` and the curved underside."""
     angle = np.linspace(np.pi, 0.0, sides + 1)
     x, z = centre_x + span_m / 2.0 * np.cos(angle), spring_m + span_m / 2.0 * np.sin(angle)
@@ -130,7 +170,9 @@ def arch(shape: Shape, material: str, centre_x: float, span_m: float, y0: float,
     shape.polygons(material, [(left, y0, top_m), (right, y0, top_m), (right, y1, top_m), (left, y1, top_m)])
 
 
-def vault(shape: Shape, material: str, x0: float, x1: float, y0: float, y1: float, spring_m: float, crown_m: float, end: str) -> None:
+def vault(
+    shape: Shape, material: str, x0: float, x1: float, y0: float, y1: float, spring_m: float, crown_m: float, end: str
+) -> None:
     """Add a barrel vault along y, seen from outside, with end walls of `end`."""
     angle = np.linspace(0.0, np.pi, 13)
     x = (x0 + x1) / 2.0 + (x1 - x0) / 2.0 * np.cos(angle)
@@ -148,6 +190,8 @@ def door(shape: Shape, x_m: float, y_m: float, width_m: float, height_m: float, 
     half = width_m / 2.0
     for side in (-half - 0.15, half + 0.15):
         shape.box("marble", (x_m + side - 0.15, low, 0.0), (x_m + side + 0.15, high, height_m))
-    shape.box("marble", (x_m - half - 0.4, low, height_m), (x_m + half + 0.4, high + 0.05 * (facing > 0), height_m + 0.4))
+    shape.box(
+        "marble", (x_m - half - 0.4, low, height_m), (x_m + half + 0.4, high + 0.05 * (facing > 0), height_m + 0.4)
+    )
     inner_low, inner_high = sorted((y_m, y_m + 0.04 * facing))
     shape.box("wood", (x_m - half, inner_low, 0.0), (x_m + half, inner_high, height_m))

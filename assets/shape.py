@@ -66,6 +66,12 @@ def footprint_own_m(monument: Monument) -> Array:
     return Place.of(monument).own(corners)[:, :2]
 
 
+def size_m(monument: Monument) -> tuple[float, float]:
+    """Return length (along x) and width (along y) of a footprint, in the monument's own axes."""
+    length, width = footprint_own_m(monument).max(axis=0)
+    return float(length), float(width)
+
+
 @dataclass
 class _Batch:
     material: str
@@ -87,7 +93,7 @@ class Shape:
         points = np.asarray(corners, dtype=np.float64)
         points = points[None] if points.ndim == 2 else points
         k, n, _ = points.shape
-        normal = _unit(np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]))
+        normal = unit(np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]))
         normals = np.repeat(normal[:, None], n, axis=1)
         fan = np.array([(0, i, i + 1) for i in range(1, n - 1)])
         triangles = (fan[None] + np.arange(k)[:, None, None] * n).reshape(-1, 3)
@@ -99,13 +105,13 @@ class Shape:
         """Add a smooth surface through a grid of points, (a, b, 3): outside is to the left of a seen along b."""
         p = np.asarray(points, dtype=np.float64)
         a, b, _ = p.shape
-        normals = _unit(np.cross(np.gradient(p, axis=0), np.gradient(p, axis=1)))
+        normals = unit(np.cross(np.gradient(p, axis=0), np.gradient(p, axis=1)))
         along_a = np.concatenate([np.zeros((1, b)), np.cumsum(np.linalg.norm(np.diff(p, axis=0), axis=2), axis=0)])
         along_b = np.concatenate(
             [np.zeros((a, 1)), np.cumsum(np.linalg.norm(np.diff(p, axis=1), axis=2), axis=1)], axis=1
         )
         self._add(
-            material, p.reshape(-1, 3), normals.reshape(-1, 3), np.stack([along_a, along_b], -1), tint, _cells(a, b)
+            material, p.reshape(-1, 3), normals.reshape(-1, 3), np.stack([along_a, along_b], -1), tint, cells(a, b)
         )
 
     def box(self, material: str, low: Sequence[float], high: Sequence[float], tint: ArrayLike = 1.0) -> None:
@@ -147,6 +153,12 @@ class Shape:
         self.batches.append(_Batch(material, points, normals, uvs.reshape(-1, 2), np.array(rows), triangles))
 
 
+def turned(shape: Shape, part: Shape, side: int, length_m: float, width_m: float) -> None:
+    """Add `part`, whose front lies on y = 0 and looks to -y, on a side of a rectangle: 0 south, 1 east, 2 north, 3 west."""
+    offset = ((0.0, 0.0), (length_m, 0.0), (length_m, width_m), (0.0, width_m))[side]
+    shape.copies(part, np.array([[*offset, 0.0]]), np.array([side * np.pi / 2.0]))
+
+
 def _joined(material: str, batches: list[_Batch], place: Place) -> Mesh:
     starts = np.cumsum([0] + [len(b.points) for b in batches[:-1]])
     return Mesh(
@@ -171,14 +183,15 @@ _BOX = np.array(
 """The five faces of a box, counter-clockwise from outside: 0 the lower, 1 the upper value of x, y, z."""
 
 
-def _unit(vectors: Array) -> Array:
+def unit(vectors: Array) -> Array:
+    """Return vectors (..., 3) at length 1; a vector of no length stays."""
     return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12))
 
 
 def _planar(points: Array, normal: Array) -> Array:
     """Texture coordinates in metres of (k, n, 3) flat polygons: from above on floors, along and down elsewhere."""
     flat = normal[:, 2] > STEEPEST_FLOOR
-    along = _unit(np.stack([-normal[:, 1], normal[:, 0], np.zeros(len(normal))], -1))
+    along = unit(np.stack([-normal[:, 1], normal[:, 0], np.zeros(len(normal))], -1))
     along[np.abs(normal[:, 2]) > 0.999] = (1.0, 0.0, 0.0)
     along[flat & (np.abs(normal[:, 2]) <= 0.999)] = (1.0, 0.0, 0.0)
     down = np.cross(along, normal)
@@ -186,8 +199,8 @@ def _planar(points: Array, normal: Array) -> Array:
     return np.stack([np.einsum("kni,ki->kn", points, along), np.einsum("kni,ki->kn", points, down)], -1)
 
 
-def _cells(a: int, b: int) -> NDArray[np.int64]:
-    """Two triangles per cell of an (a, b) grid, split from its first to its last corner."""
+def cells(a: int, b: int) -> NDArray[np.int64]:
+    """Return two triangles per cell of an (a, b) grid, split from its first to its last corner; all the first ones come first."""
     first = (np.arange(a - 1)[:, None] * b + np.arange(b - 1)).ravel()
     next_a, next_b, last = first + b, first + 1, first + b + 1
     return np.concatenate([np.stack([first, next_a, last], -1), np.stack([first, last, next_b], -1)])

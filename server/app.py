@@ -10,7 +10,7 @@ from fastapi.telemetry import TelemetryConfig
 
 from server.auth import Tokens
 from server.guards import Guard
-from server.routes import Bundle, api_routes, page_routes
+from server.routes import Bundle, api_routes, log_routes, page_routes
 from server.sessions import Sessions
 from server.sockets import socket_routes
 
@@ -34,6 +34,7 @@ def create_app(
     viewer_tokens: Iterable[str] | None = None,
     allowed_hosts: Collection[str] = LOOPBACK_HOSTS,
     console_url: str | None = None,
+    logs: Mapping[str, Path] | None = None,
 ) -> FastAPI:
     """Return the server's application; `app.state.sessions` are its sessions.
 
@@ -45,12 +46,14 @@ def create_app(
         viewer_tokens: Any of these lets a viewer watch; None lets everybody, which is right on loopback only.
         allowed_hosts: Names in the Host header that are us; `*` for any.
         console_url: Where `/console` leads, if anywhere.
+        logs: The recorded walks that `/api/logs` offers, by session name.
     """
     sessions = Sessions(monotonic_ns)
     # The interactive documentation loads its scripts from elsewhere, so there is none; /openapi.json stays.
     app = FastAPI(title="Agora", docs_url=None, redoc_url=None, telemetry=_NO_TELEMETRY)
     app.state.sessions = sessions
     app.include_router(api_routes(sessions, site, web_folder))
+    app.include_router(log_routes(logs or {}))
     app.include_router(page_routes(web_folder, models_folder, console_url))
     app.include_router(
         socket_routes(sessions, Tokens(rig_tokens), None if viewer_tokens is None else Tokens(viewer_tokens))

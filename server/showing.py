@@ -48,6 +48,7 @@ class Showing:
             site=site_facts(site, models),
             rig_tokens=[self._token],
             console_url=self._start_console(),
+            logs={self._session: log.path},
         )
         self._server = WebServer(app, "127.0.0.1", port)
 

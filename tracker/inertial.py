@@ -1,22 +1,27 @@
-"""Velocity and position by integration: the specific force turned to ENU, gravity removed, integrated twice.
+"""Velocity and position by integration (m_imu): the specific force turned to ENU, gravity removed, integrated twice.
 
 The paper integrates within four samples (16 ms), which gives micrometres; its conclusion says that the IMU carries the position
 from one GPS fix to the next, and that is what is done here: displacements are read between any two times of the last seconds.
+Its v(0) is what a fix or the receiver's own velocity says.
 """
 
 from collections import deque
-from dataclasses import dataclass
-from math import exp as exponential
+from dataclasses import dataclass, replace
+from math import cos, sin
 
 from tracker.calibration import MeanSample
-from tracker.geometry import exp, multiply, rotate, slerp, wxyz_from_yaw
+from tracker.geometry import exp, multiply, rotate, slerp
 from tracker.measurements import Vector3, Wxyz
+from tracker.pace import Pace, share_of
 
 #: How far back displacements can be read: longer than the latest GPS fix and the oldest keyframe.
 HISTORY_S = 2.5
-#: After this long without a reset the velocity can only have drifted, and is let go of with this time constant.
+#: After this long without a known velocity the integral can only have drifted: with this time constant it gives way to the
+#: walker's pace.
 TRUSTED_S = 2.0
 LEAK_S = 1.0
+#: Velocities that come faster than this share their say: each has noise of its own.
+VELOCITY_S = 0.5
 #: A prediction holds the velocity at most this long, then stands still.
 LONGEST_PREDICTION_S = 1.0
 
@@ -30,6 +35,8 @@ class InertialState:
     p_m: Vector3
     v_m_s: Vector3
     gyro_rad_s: Vector3
+    gained_level_m_s: tuple[float, float]
+    """Horizontal velocity gained since the start, in the level frame: only differences of it mean something."""
 
 
 class InertialPath:
@@ -38,7 +45,11 @@ class InertialPath:
     def __init__(self, gravity_m_s2: float) -> None:
         self._gravity = gravity_m_s2
         self._states: deque[InertialState] = deque()
-        self._reset_ns: int | None = None
+        self._known_ns: int | None = None
+        """When the velocity was last known from outside."""
+        self._yaw_offset_rad: float | None = None
+        self._yaw_offset = (1.0, 0.0)
+        self._pace = Pace()
 
     @property
     def newest(self) -> InertialState | None:
@@ -47,32 +58,57 @@ class InertialPath:
 
     def step(self, mean: MeanSample, wxyz_level_body: Wxyz, yaw_offset_rad: float | None) -> None:
         """Integrate one mean sample; while north is unknown its force has no direction, and the velocity is only held."""
+        self._pace.step(mean.accel_m_s2, wxyz_level_body, mean.dt_s)
         last = self.newest
         if last is None:
             zero = (0.0, 0.0, 0.0)
-            self._states.append(InertialState(mean.t_ns, wxyz_level_body, zero, zero, mean.gyro_rad_s))
+            self._states.append(InertialState(mean.t_ns, wxyz_level_body, zero, zero, mean.gyro_rad_s, (0.0, 0.0)))
             return
-        dt, (vx, vy, vz), (px, py, pz) = mean.dt_s, last.v_m_s, last.p_m
+        if yaw_offset_rad != self._yaw_offset_rad:
+            self._yaw_offset_rad = yaw_offset_rad
+            self._yaw_offset = (cos(yaw_offset_rad or 0.0), sin(yaw_offset_rad or 0.0))
+        dt, (vx, vy, vz), (px, py, pz), (gx, gy) = mean.dt_s, last.v_m_s, last.p_m, last.gained_level_m_s
+        fx, fy, fz = rotate(wxyz_level_body, mean.accel_m_s2)
         ax = ay = az = 0.0
         if yaw_offset_rad is not None:
-            q = multiply(wxyz_from_yaw(yaw_offset_rad), wxyz_level_body)
-            ax, ay, az = rotate(q, mean.accel_m_s2)
-            az -= self._gravity
+            c, s = self._yaw_offset
+            ax, ay, az = c * fx - s * fy, s * fx + c * fy, fz - self._gravity
         half = 0.5 * dt * dt
         p = (px + vx * dt + ax * half, py + vy * dt + ay * half, pz + vz * dt + az * half)
-        keep = 1.0
-        if self._reset_ns is None or mean.t_ns - self._reset_ns > TRUSTED_S * 1e9:
-            keep = exponential(-dt / LEAK_S)
-        v = ((vx + ax * dt) * keep, (vy + ay * dt) * keep, (vz + az * dt) * keep)
-        self._states.append(InertialState(mean.t_ns, wxyz_level_body, p, v, mean.gyro_rad_s))
+        v = (vx + ax * dt, vy + ay * dt, vz + az * dt)
+        if self._known_ns is None or mean.t_ns - self._known_ns > TRUSTED_S * 1e9:
+            v = _mix(v, self._expected(), share_of(dt, LEAK_S))
+        gained = (gx + fx * dt, gy + fy * dt)
+        self._states.append(InertialState(mean.t_ns, wxyz_level_body, p, v, mean.gyro_rad_s, gained))
         while mean.t_ns - self._states[0].t_ns > HISTORY_S * 1e9:
             self._states.popleft()
 
-    def reset_velocity(self, v_site_m_s: Vector3) -> None:
-        """Replace the velocity: a fix has just corrected it."""
-        last = self._states[-1]
-        self._states[-1] = InertialState(last.t_ns, last.wxyz_level_body, last.p_m, v_site_m_s, last.gyro_rad_s)
-        self._reset_ns = last.t_ns
+    def _expected(self) -> Vector3:
+        return self._pace.velocity_m_s(self._yaw_offset) if self._yaw_offset_rad is not None else (0.0, 0.0, 0.0)
+
+    def correct_velocity(self, t_ns: int, v_site_m_s: Vector3) -> None:
+        """Take a velocity known at t_ns, now or in the past: what was integrated since then moves on with it."""
+        then = self.at(t_ns)
+        if then is None:
+            return
+        since_s = (t_ns - self._known_ns) * 1e-9 if self._known_ns is not None else TRUSTED_S
+        if since_s <= 0.0:
+            return
+        share = share_of(since_s, VELOCITY_S)
+        dx, dy, dz = (share * (new - old) for new, old in zip(v_site_m_s, then.v_m_s, strict=True))
+        states = self._states
+        for index in range(len(states) - 1, -1, -1):
+            state = states[index]
+            if state.t_ns < t_ns and index < len(states) - 1:
+                break
+            dt = max(0.0, (state.t_ns - t_ns) * 1e-9)
+            (px, py, pz), (vx, vy, vz) = state.p_m, state.v_m_s
+            states[index] = replace(
+                state, p_m=(px + dx * dt, py + dy * dt, pz + dz * dt), v_m_s=(vx + dx, vy + dy, vz + dz)
+            )
+        self._known_ns = t_ns
+        if self._yaw_offset_rad is not None:
+            self._pace.learn(v_site_m_s, self._yaw_offset)
 
     def at(self, t_ns: int) -> InertialState | None:
         """Return the state at a time: interpolated inside the history, held at its start, carried on after its end."""
@@ -104,13 +140,15 @@ def _carry_on(state: InertialState, dt_s: float, t_ns: int) -> InertialState:
     turn_s = min(dt_s, 0.1)
     q = multiply(state.wxyz_level_body, exp((gx * turn_s, gy * turn_s, gz * turn_s)))
     p = (px + vx * dt_s, py + vy * dt_s, pz + vz * dt_s)
-    return InertialState(t_ns, q, p, state.v_m_s, state.gyro_rad_s)
+    return InertialState(t_ns, q, p, state.v_m_s, state.gyro_rad_s, state.gained_level_m_s)
 
 
 def _between(a: InertialState, b: InertialState, t_ns: int) -> InertialState:
     f = (t_ns - a.t_ns) / (b.t_ns - a.t_ns)
     q = slerp(a.wxyz_level_body, b.wxyz_level_body, f)
-    return InertialState(t_ns, q, _mix(a.p_m, b.p_m, f), _mix(a.v_m_s, b.v_m_s, f), a.gyro_rad_s)
+    (ax, ay), (bx, by) = a.gained_level_m_s, b.gained_level_m_s
+    gained = (ax + f * (bx - ax), ay + f * (by - ay))
+    return InertialState(t_ns, q, _mix(a.p_m, b.p_m, f), _mix(a.v_m_s, b.v_m_s, f), a.gyro_rad_s, gained)
 
 
 def _mix(a: Vector3, b: Vector3, f: float) -> Vector3:

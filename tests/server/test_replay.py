@@ -174,6 +174,14 @@ def test_a_walk_without_camera_is_shown_over_empty_pictures(dark: Path, tmp_path
         assert set(watcher.session["unavailable"]) == {"camera-gps-imu/cmm", "camera-gps-imu/famm"}
 
 
+def test_the_log_itself_can_be_had(dark: Path, tmp_path: Path) -> None:
+    site = replace(load_site(SITE), folder=tmp_path)
+    with Showing(site, Log.open(dark), ReplaySettings(), port=0, web=tmp_path) as shown:
+        assert httpx.get(f"{shown.url}api/logs").json() == {"logs": [{"name": "dark", "bytes": dark.stat().st_size}]}
+        assert httpx.get(f"{shown.url}api/logs/dark").content == dark.read_bytes()
+        assert httpx.get(f"{shown.url}api/logs/..%2Fwall").status_code == 404
+
+
 def test_nothing_is_left_behind(wall: Path, tmp_path: Path) -> None:
     before = set(threading.enumerate())
     with watching(wall, ReplaySettings(), tmp_path) as watcher:

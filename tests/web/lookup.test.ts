@@ -104,5 +104,7 @@ test("the drawing is as fine as the screen, keeps its shape, and stays within wh
     expect(Math.abs(height - fullHeight * shrink)).toBeLessThanOrEqual(0.5);
     expect(Math.max(width, height)).toBeLessThanOrEqual(limit);
   });
-  expect(drawingSize({ ...SIZE, model: "none", coefficients: [] }, { left: 0, right: 0, top: 0, bottom: 0 }, 1, 99)).toEqual([1, 1]);
+  expect(
+    drawingSize({ ...SIZE, model: "none", coefficients: [] }, { left: 0, right: 0, top: 0, bottom: 0 }, 1, 99),
+  ).toEqual([1, 1]);
 });

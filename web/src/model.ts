@@ -9,13 +9,12 @@ import {
   Mesh,
   MeshStandardMaterial,
   NoBlending,
+  type Object3D,
   Scene,
   Vector3,
 } from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 
-/** Nodes that are ground rather than building. */
-const GROUND = /^(ground|terrain|square|paving|street|steps_ground)/;
 const SHADOW_MAP_PX = 2048;
 /** Half the side of the square that the sun's shadows cover, metres. */
 const SHADOW_REACH_M = 130;
@@ -29,32 +28,42 @@ export interface Square {
 /** Load a model and light it. `groundShare` is how much of the ground is drawn: 1 hides the real one. */
 export async function loadSquare(url: string, groundShare: number): Promise<Square> {
   const { scene: model } = await new GLTFLoader().loadAsync(url);
+  const thinned = new Map<MeshStandardMaterial, MeshStandardMaterial>();
   model.traverse((node) => {
     if (!(node instanceof Mesh)) return;
-    const isGround = isUnder(node, GROUND);
-    node.castShadow = !isGround;
+    const ground = isGround(node);
+    node.castShadow = !ground;
     node.receiveShadow = true;
-    if (isGround && groundShare < 1 && node.material instanceof MeshStandardMaterial) thin(node.material, groundShare);
+    const { material } = node;
+    if (!ground || groundShare >= 1 || !(material instanceof MeshStandardMaterial)) return;
+    // buildings may be of the same material, and stay whole
+    const thin = thinned.get(material) ?? thinnedCopy(material, groundShare);
+    thinned.set(material, thin);
+    node.material = thin;
   });
   const scene = new Scene();
   scene.add(model, ...lights());
   return { scene, model, bounds: new Box3().setFromObject(model) };
 }
 
-function isUnder(mesh: Mesh, name: RegExp): boolean {
-  for (let node: Mesh["parent"] = mesh; node !== null; node = node.parent) if (name.test(node.name)) return true;
+/** Whether the node, or one that it is part of, is ground rather than building: the model says so itself. */
+export function isGround(node: Object3D): boolean {
+  for (let part: Object3D | null = node; part !== null; part = part.parent)
+    if (part.userData["role"] === "ground") return true;
   return false;
 }
 
 /** Write a share of the colour, and that share as coverage: what lies in front of the ground is not seen through. */
-function thin(material: MeshStandardMaterial, share: number): void {
-  material.blending = NoBlending;
-  material.onBeforeCompile = (shader) => {
+function thinnedCopy(material: MeshStandardMaterial, share: number): MeshStandardMaterial {
+  const thin = material.clone();
+  thin.blending = NoBlending;
+  thin.onBeforeCompile = (shader) => {
     shader.fragmentShader = shader.fragmentShader.replace(
       "#include <dithering_fragment>",
       `#include <dithering_fragment>\n gl_FragColor *= ${share.toFixed(3)};`,
     );
   };
+  return thin;
 }
 
 /** Late morning in June: the sun stands high in the south-east. */
