@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from functools import partial
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -76,7 +77,7 @@ def build(site: Site, folder: Path, progress: Callable[[float], None]) -> BuildR
     """
     files, drawn = [], Scene([], {})
     for i, (name, make) in enumerate(MODELS.items()):
-        scene = make(site, lambda share, i=i: progress((i + 0.9 * share) / len(MODELS)))  # type: ignore[misc]
+        scene = make(site, partial(_report, progress, i))
         data = write_glb(
             scene, {"site": site.id, "model": name, "attribution": site.attribution, "licence": site.licence}
         )
@@ -91,6 +92,10 @@ def build(site: Site, folder: Path, progress: Callable[[float], None]) -> BuildR
         triangles=sum(node.triangles for node in drawn.nodes),
         gpu_bytes=_gpu_bytes(drawn),
     )
+
+
+def _report(progress: Callable[[float], None], before: int, share: float) -> None:
+    progress((before + 0.9 * share) / len(MODELS))
 
 
 def _relative(path: Path, folder: Path) -> str:
@@ -118,4 +123,4 @@ def _gpu_bytes(scene: Scene) -> int:
         len(m.positions_m) * (12 + 12 + 8 + 4) + m.triangles.size * (2 if len(m.positions_m) <= 65535 else 4)
         for m in meshes
     )
-    return arrays + sum(texture.shape[0] * texture.shape[1] * 4 * 4 // 3 for texture in scene.textures.values())
+    return arrays + sum(texture.size * 16 // 9 for texture in scene.textures.values())

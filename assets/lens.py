@@ -13,6 +13,7 @@ NONE, EQUIDISTANT = "none", "equidistant"
 MODELS = (NONE, "plumb_bob", "rational_polynomial", EQUIDISTANT)
 WIDEST = 4.0
 """Tangent of the widest half angle that one flat picture can hold."""
+INVERSE_STEPS = 40
 
 
 @dataclass(frozen=True)
@@ -47,14 +48,12 @@ class Lens:
             raise ValueError(f"distortion_model is {self.distortion_model!r}, not one of {', '.join(MODELS)}")
         p = self.pinhole
         x, y = np.meshgrid(np.arange(p.width_px, dtype=np.float64), np.arange(p.height_px, dtype=np.float64))
-        pixels = np.stack([x, y], axis=-1).reshape(-1, 1, 2)
-        K = np.array([[p.fx_px, 0.0, p.cx_px], [0.0, p.fy_px, p.cy_px], [0.0, 0.0, 1.0]])
+        pixels = np.stack([x, y], axis=-1)
         if self.distortion_model == EQUIDISTANT:
-            rays = cv2.fisheye.undistortPoints(pixels, K, _padded(self.distortion, 4))
-        else:
-            criteria = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 40, 1e-9)
-            rays = cv2.undistortPointsIter(pixels, K, _padded(self.distortion, 8), np.eye(3), np.eye(3), criteria)
-        return np.asarray(rays, dtype=np.float64).reshape(p.height_px, p.width_px, 2)
+            K = np.array([[p.fx_px, 0.0, p.cx_px], [0.0, p.fy_px, p.cy_px], [0.0, 0.0, 1.0]])
+            flat = cv2.fisheye.undistortPoints(pixels.reshape(-1, 1, 2), K, _padded(self.distortion, 4))
+            return np.asarray(flat, dtype=np.float64).reshape(pixels.shape)
+        return _straightened((pixels - (p.cx_px, p.cy_px)) / (p.fx_px, p.fy_px), self.distortion)
 
     def oversized(self) -> tuple[Pinhole, NDArray[np.float32]]:
         """Return a pinhole camera that sees all this lens sees, and (height, width, 2) where each pixel lies in its picture."""
@@ -73,3 +72,16 @@ def _padded(distortion: Sequence[float], length: int) -> Array:
     values = np.zeros(length)
     values[: len(distortion)] = distortion
     return values
+
+
+def _straightened(distorted: Array, distortion: Sequence[float]) -> Array:
+    """Invert OpenCV's polynomial (k1 k2 p1 p2 k3 k4 k5 k6) at (..., 2) by fixed-point steps."""
+    k1, k2, p1, p2, k3, k4, k5, k6 = _padded(distortion, 8)
+    rays = distorted
+    for _ in range(INVERSE_STEPS):
+        x, y = rays[..., 0], rays[..., 1]
+        r2 = x * x + y * y
+        factor = (1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1.0 + r2 * (k4 + r2 * (k5 + r2 * k6)))
+        shift = np.stack([2 * p1 * x * y + p2 * (r2 + 2 * x * x), p1 * (r2 + 2 * y * y) + 2 * p2 * x * y], axis=-1)
+        rays = (distorted - shift) / factor[..., None]
+    return rays

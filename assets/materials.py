@@ -29,6 +29,7 @@ MATERIALS = {
     "stone": Material(textures.stone, 2.5, 0.95),
     "scrub": Material(textures.scrub, 160.0, 1.0),
     "leaves": Material(textures.leaves, 3.0, 1.0),
+    "straw": Material(textures.straw, 2.0, 1.0),
     "wood": Material(textures.wood, 2.0, 0.9),
     "water": Material(textures.water, 5.0, 0.2),
 }

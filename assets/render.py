@@ -4,6 +4,7 @@ One renderer belongs to the thread that made it.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from types import TracebackType
@@ -15,18 +16,40 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from assets.axes import Array
+from assets.chunks import Chunk, chunked, seen
 from assets.errors import GraphicsMissing
 from assets.gltf import Scene, read_glb
 from assets.lens import Lens, Pinhole
-from assets.shaders import DISC_FRAGMENT, DISC_VERTEX, SCENE_FRAGMENT, SCENE_VERTEX, SKY_FRAGMENT, SKY_VERTEX
+from assets.shaders import (
+    DISC_FRAGMENT,
+    DISC_VERTEX,
+    SCENE_FRAGMENT,
+    SCENE_VERTEX,
+    SHADE_FRAGMENT,
+    SHADE_VERTEX,
+    SKY_FRAGMENT,
+    SKY_VERTEX,
+)
 
 Picture: TypeAlias = NDArray[np.uint8]
 NEAR_M, FAR_M = 0.2, 4000.0
-SUN_AZIMUTH_RAD, SUN_ELEVATION_RAD = np.radians(230.0), np.radians(48.0)
-"""An afternoon in early summer."""
+SUN_AZIMUTH_RAD, SUN_ELEVATION_RAD = np.radians(212.0), np.radians(62.0)
+"""An hour after noon in early summer."""
 MAX_SAMPLES = 4
-MAX_ANISOTROPY = 4.0
+SHADE_PX, SHADE_RADIUS_M, SHADE_CENTRE_M = 4096, 200.0, (-40.0, 0.0, 0.0)
+"""The shadows' picture: a square of the site as the sun sees it."""
 DISC_CORNERS = 24
+
+
+@dataclass(frozen=True)
+class _Part:
+    """All meshes of one material, and the buffers under them."""
+
+    texture: Any
+    array: Any
+    vertices: Any
+    elements: Any
+    chunks: tuple[Chunk, ...]
 
 
 class Renderer:
@@ -50,6 +73,7 @@ class Renderer:
         for program in (self._scene, self._sky):
             program["sun"].value = sun_direction()
         self._parts = [self._load(scene, material) for material in scene.textures]
+        self._shade = self._shadows()
 
     def __enter__(self) -> "Renderer":
         return self
@@ -107,7 +131,8 @@ class Renderer:
         if lens.is_straight:
             return self._draw(lens.pinhole, pose, points, colours, radius_px)
         wide, place = _oversized(lens)
-        return np.asarray(cv2.remap(self._draw(wide, pose, points, colours, radius_px), place, None, cv2.INTER_LINEAR))
+        drawn = self._draw(wide, pose, points, colours, radius_px)
+        return np.asarray(cv2.remap(drawn, place[..., 0], place[..., 1], cv2.INTER_LINEAR), dtype=np.uint8)
 
     def _draw(
         self, camera: Pinhole, pose: Array, points: Array, colours: Sequence[tuple[int, int, int]], radius_px: float
@@ -116,19 +141,24 @@ class Renderer:
         multisampled.use()
         self._gl.viewport = (0, 0, camera.width_px, camera.height_px)
         self._gl.clear()
-        T_cam_site = np.linalg.inv(pose)
+        T_cam_site = np.linalg.inv(pose).astype(np.float64)
         projection = projection_from_pinhole(camera)
-        self._gl.disable(moderngl.DEPTH_TEST)
+        self._gl.enable(moderngl.DEPTH_TEST)
+        self._scene["clip_site"].write((projection @ T_cam_site).T.astype(np.float32).tobytes())
+        self._scene["eye_m"].value = tuple(float(x) for x in pose[:3, 3])
+        self._shade.use(1)
+        drawn = [
+            (near, i, chunk)
+            for i, part in enumerate(self._parts)
+            for near, chunk in seen(part.chunks, T_cam_site, camera)
+        ]
+        for _, i, chunk in sorted(drawn, key=lambda item: item[:2]):
+            self._parts[i].texture.use(0)
+            self._parts[i].array.render(vertices=chunk.count, first=chunk.first)
         self._sky["R_site_cam"].write(pose[:3, :3].T.astype(np.float32).tobytes())
         self._sky["scale"].value = (camera.width_px / camera.fx_px, camera.height_px / camera.fy_px)
         self._sky["centre"].value = ((camera.cx_px + 0.5) / camera.width_px, (camera.cy_px + 0.5) / camera.height_px)
         self._sky_corners.render(moderngl.TRIANGLE_STRIP, vertices=4)
-        self._gl.enable(moderngl.DEPTH_TEST)
-        self._scene["clip_site"].write((projection @ T_cam_site).T.astype(np.float32).tobytes())
-        self._scene["eye_m"].value = tuple(float(x) for x in pose[:3, 3])
-        for texture, array in self._parts:
-            texture.use(0)
-            array.render()
         if len(points):
             self._gl.disable(moderngl.DEPTH_TEST)
             self._discs(camera, points @ T_cam_site[:3, :3].T + T_cam_site[:3, 3], colours, radius_px)
@@ -167,21 +197,41 @@ class Renderer:
             self._targets[(width, height)] = (self._gl.framebuffer([colour], depth), plain)
         return self._targets[(width, height)]
 
-    def _load(self, scene: Scene, material: str) -> tuple[Any, Any]:
-        """All meshes of one material as one draw call."""
+    def _shadows(self) -> Any:
+        """The depth of everything as the sun sees it: nothing moves, so it is drawn once."""
+        program = self._gl.program(vertex_shader=SHADE_VERTEX, fragment_shader=SHADE_FRAGMENT)
+        depth = self._gl.depth_texture((SHADE_PX, SHADE_PX))
+        depth.compare_func = "<="
+        seen = sun_projection().T.astype(np.float32).tobytes()
+        program["shade_site"].write(seen)
+        self._scene["shade_site"].write(seen)
+        self._scene["surface"].value, self._scene["shade"].value = 0, 1
+        target = self._gl.framebuffer(depth_attachment=depth)
+        target.use()
+        target.clear()
+        self._gl.enable(moderngl.DEPTH_TEST)
+        for part in self._parts:
+            array = self._gl.vertex_array(program, [(part.vertices, "3f 32x", "position")], part.elements)
+            array.render()
+            array.release()
+        target.release()
+        return depth
+
+    def _load(self, scene: Scene, material: str) -> _Part:
         picture = scene.textures[material]
         rgb = np.ascontiguousarray(picture[..., ::-1])
         texture = self._gl.texture(rgb.shape[1::-1], 3, rgb.tobytes(), alignment=1)
         texture.build_mipmaps()
         texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
-        texture.anisotropy = MAX_ANISOTROPY
         meshes = [mesh for node in scene.nodes for mesh in node.meshes if mesh.material == material]
         starts = np.cumsum([0] + [len(mesh.positions_m) for mesh in meshes[:-1]])
         floats = [np.hstack([m.positions_m, m.normals, m.uvs, m.colours / np.float32(255.0)]) for m in meshes]
-        indices = np.concatenate([m.triangles + s for m, s in zip(meshes, starts, strict=True)]).astype(np.uint32)
-        vertices = self._gl.buffer(np.concatenate(floats).astype(np.float32).tobytes())
+        table = np.concatenate(floats).astype(np.float32)
+        triangles = np.concatenate([m.triangles + s for m, s in zip(meshes, starts, strict=True)]).astype(np.uint32)
+        triangles, chunks = chunked(table[:, :3], triangles)
+        vertices, elements = self._gl.buffer(table.tobytes()), self._gl.buffer(triangles.tobytes())
         layout = [(vertices, "3f 3f 2f 3f", "position", "normal", "uv", "colour")]
-        return texture, self._gl.vertex_array(self._scene, layout, self._gl.buffer(indices.tobytes()))
+        return _Part(texture, self._gl.vertex_array(self._scene, layout, elements), vertices, elements, chunks)
 
 
 def sun_direction() -> tuple[float, float, float]:
@@ -189,6 +239,18 @@ def sun_direction() -> tuple[float, float, float]:
     flat = np.cos(SUN_ELEVATION_RAD)
     east, north = flat * np.sin(SUN_AZIMUTH_RAD), flat * np.cos(SUN_AZIMUTH_RAD)
     return float(east), float(north), float(np.sin(SUN_ELEVATION_RAD))
+
+
+def sun_projection() -> Array:
+    """Return the (4, 4) map from the site frame to the clip space of the shadows' picture."""
+    towards = np.array(sun_direction())
+    right = np.cross((0.0, 0.0, 1.0), towards)
+    right /= np.linalg.norm(right)
+    axes = np.stack([right, np.cross(towards, right), -towards]) / SHADE_RADIUS_M
+    T = np.eye(4)
+    T[:3, :3] = axes
+    T[:3, 3] = -axes @ SHADE_CENTRE_M
+    return T
 
 
 def projection_from_pinhole(camera: Pinhole) -> Array:
@@ -210,7 +272,7 @@ def projection_from_pinhole(camera: Pinhole) -> Array:
 
 def _context() -> Any:
     try:
-        return moderngl.create_standalone_context(backend="egl")
+        return moderngl.create_context(standalone=True, backend="egl")  # type: ignore[arg-type]  # moderngl annotates **settings as a dict
     except Exception as exc:  # moderngl raises plain Exception, and ImportError or OSError for a missing library
         raise GraphicsMissing(
             f"no off-screen OpenGL on this machine ({exc}); on Debian or Ubuntu run: apt-get install libegl1 libgl1 libgl1-mesa-dri"

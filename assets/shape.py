@@ -101,8 +101,11 @@ class Shape:
         tints = np.repeat(tints[:, None], n, axis=1).reshape(k * n, -1) if tints.ndim == 2 else tints
         self._add(material, points.reshape(-1, 3), normals.reshape(-1, 3), _planar(points, normal), tints, triangles)
 
-    def surface(self, material: str, points: ArrayLike, tint: ArrayLike = 1.0) -> None:
-        """Add a smooth surface through a grid of points, (a, b, 3): outside is to the left of a seen along b."""
+    def surface(self, material: str, points: ArrayLike, tint: ArrayLike = 1.0, from_above: bool = False) -> None:
+        """Add a smooth surface through a grid of points, (a, b, 3): outside is to the left of a seen along b.
+
+        Its texture follows the grid, or lies on it as seen `from_above`.
+        """
         p = np.asarray(points, dtype=np.float64)
         a, b, _ = p.shape
         normals = unit(np.cross(np.gradient(p, axis=0), np.gradient(p, axis=1)))
@@ -110,9 +113,15 @@ class Shape:
         along_b = np.concatenate(
             [np.zeros((a, 1)), np.cumsum(np.linalg.norm(np.diff(p, axis=1), axis=2), axis=1)], axis=1
         )
-        self._add(
-            material, p.reshape(-1, 3), normals.reshape(-1, 3), np.stack([along_a, along_b], -1), tint, cells(a, b)
-        )
+        uvs = p[..., :2] * (1.0, -1.0) if from_above else np.stack([along_a, along_b], -1)
+        self._add(material, p.reshape(-1, 3), normals.reshape(-1, 3), uvs, tint, cells(a, b))
+
+    def leaves(self, material: str, corners: Array, normals: Array, tint: Array) -> None:
+        """Add loose triangles (k, 3, 3), each lit as if it faced its normal (k, 3), with a tint (k, 3)."""
+        k = len(corners)
+        uvs = corners[..., :2] + corners[..., 2:] * (0.7, 0.5)
+        flat = (np.repeat(normals, 3, axis=0), uvs, np.repeat(tint, 3, axis=0), np.arange(3 * k).reshape(k, 3))
+        self._add(material, corners.reshape(-1, 3), *flat)
 
     def box(self, material: str, low: Sequence[float], high: Sequence[float], tint: ArrayLike = 1.0) -> None:
         """Add an upright box without its underside."""

@@ -120,6 +120,8 @@ class Site:
     licence: str
     default_view: View
     tour: tuple[View, ...]
+    ways: tuple[tuple[PointEN, ...], ...]
+    """Closed rounds that visitors walk; whatever stands today keeps clear of them, and of all that a convex one encloses."""
     terrain: Mapping[str, Any]
     """The ground's description as `assets.terrain` reads it."""
     monuments: tuple[Monument, ...]
@@ -216,6 +218,7 @@ def load_site(folder: Path) -> Site:
         licence=top.get("licence", str),
         default_view=_view(top.table("default_view")),
         tour=tuple(_view(row) for row in top.tables("tour")),
+        ways=tuple(_corners(top.file, f"ways[{i}]", way) for i, way in enumerate(top.get("ways", list))),
         terrain=top.get("terrain", dict),
         monuments=tuple(_monument(places.table(key), key) for key in places.values),
     )
@@ -278,13 +281,17 @@ def _figure(table: _Table) -> Figure:
 
 
 def _footprint(table: _Table) -> Footprint:
-    corners = table.get("value", list)
-    numbers = [x for c in corners if isinstance(c, list) and len(c) == 2 for x in c if isinstance(x, int | float)]
-    if len(corners) < 3 or len(numbers) != 2 * len(corners) or not all(math.isfinite(x) for x in numbers):
-        raise SiteError(f"{table.file}: '{table.path('value')}' must be at least three pairs of numbers [east, north].")
     return Footprint(
-        corners_en_m=tuple((float(e), float(n)) for e, n in corners),
+        corners_en_m=_corners(table.file, table.path("value"), table.get("value", list)),
         source=table.get("source", str),
         confidence=table.choice("confidence", get_args(Confidence)),
         uncertainty_m=table.number("uncertainty", 0.0, 1000.0),
     )
+
+
+def _corners(file: Path, path: str, corners: Any) -> tuple[PointEN, ...]:
+    pairs = corners if isinstance(corners, list) else []
+    numbers = [x for c in pairs if isinstance(c, list) and len(c) == 2 for x in c if isinstance(x, int | float)]
+    if len(pairs) < 3 or len(numbers) != 2 * len(pairs) or not all(math.isfinite(x) for x in numbers):
+        raise SiteError(f"{file}: '{path}' must be at least three pairs of numbers [east, north].")
+    return tuple((float(e), float(n)) for e, n in pairs)

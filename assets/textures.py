@@ -48,11 +48,11 @@ def _courses(seed: int, rows: int, columns: int, joint_px: float, spread: float)
 
 
 def marble() -> Texture:
-    """White marble with grey veins."""
-    veins = np.abs(noise(1, SIZE, 2, 40, 1.6))
-    cloud = noise(2, SIZE, 1, 24, 1.2)
-    rgb = _mix((176, 174, 172), (240, 234, 222), 0.25 + np.minimum(veins, 1.1) * 0.75)
-    return _painted(rgb + 5.0 * cloud[..., None] + 3.0 * noise(3, SIZE, 60, 250, 0.3)[..., None])
+    """White marble, faintly veined with grey."""
+    veins = np.clip(1.0 - 6.0 * np.abs(noise(1, SIZE, 2, 30, 1.6)), 0.0, 1.0)
+    cloud = noise(2, SIZE, 3, 40, 1.2)
+    rgb = _mix((226, 220, 208), (240, 235, 224), 0.5 + 0.3 * cloud)
+    return _painted(rgb * (1.0 - 0.09 * veins)[..., None] + 3.0 * noise(3, SIZE, 60, 250, 0.3)[..., None])
 
 
 def ashlar() -> Texture:
@@ -66,8 +66,8 @@ def rustic() -> Texture:
     """Bossed blocks, as in terrace walls."""
     tone, joint = _courses(21, 7, 4, 9.0, 1.0)
     rough = noise(22, SIZE, 6, 120, 0.9)
-    rgb = _mix((128, 120, 106), (196, 186, 166), 0.5 + 0.22 * tone + 0.22 * rough)
-    return _painted(rgb * (0.55 + 0.45 * joint)[..., None])
+    rgb = _mix((150, 143, 130), (208, 199, 182), 0.5 + 0.22 * tone + 0.22 * rough)
+    return _painted(rgb * (0.62 + 0.38 * joint)[..., None])
 
 
 def plaster() -> Texture:
@@ -97,43 +97,48 @@ def tiles() -> Texture:
 def grass() -> Texture:
     """Dry summer grass over pale earth, with darker tussocks and small stones."""
     size = 1024
-    patches, tussock = noise(61, size, 2, 14, 1.0), noise(62, size, 10, 90, 0.7)
-    blades = noise(63, size, 70, 480, 0.15)
-    rgb = _mix((150, 133, 92), (196, 180, 132), 0.5 + 0.3 * patches)
-    green = np.clip(0.15 + 0.35 * tussock + 0.2 * patches, 0.0, 0.85)[..., None]
-    rgb = rgb * (1.0 - green) + np.array((98, 104, 56)) * green
-    pebbles = np.clip((noise(64, size, 30, 120, 0.3) - 2.2) * 2.0, 0.0, 1.0)[..., None]
-    return _painted((rgb + 15.0 * blades[..., None]) * (1.0 - pebbles) + np.array((214, 206, 190)) * pebbles)
+    patches, tussock = noise(61, size, 4, 30, 0.8), noise(62, size, 16, 140, 0.6)
+    blades = noise(63, size, 60, 480, 0.15)
+    rgb = _mix((158, 144, 112), (204, 192, 158), 0.5 + 0.22 * patches + 0.14 * tussock)
+    green = np.clip(0.06 + 0.22 * tussock + 0.12 * patches, 0.0, 0.6)[..., None]
+    rgb = rgb * (1.0 - green) + np.array((112, 112, 72)) * green
+    pebbles = np.clip((noise(64, size, 40, 160, 0.3) - 2.3) * 2.0, 0.0, 1.0)[..., None]
+    return _painted((rgb + 17.0 * blades[..., None]) * (1.0 - pebbles) + np.array((218, 212, 198)) * pebbles)
 
 
 def earth() -> Texture:
     """Trodden earth and gravel."""
-    rgb = _mix((150, 128, 98), (196, 176, 142), 0.5 + 0.22 * noise(71, SIZE, 1, 30, 1.0))
+    rgb = _mix((168, 150, 124), (206, 190, 162), 0.5 + 0.22 * noise(71, SIZE, 4, 40, 0.8))
     gravel = np.clip((noise(72, SIZE, 30, 110, 0.3) - 1.4) * 1.5, 0.0, 1.0)[..., None]
     return _painted((rgb + 8.0 * noise(73, SIZE, 40, 250, 0.2)[..., None]) * (1.0 - 0.6 * gravel) + 126.0 * gravel)
 
 
 def stone() -> Texture:
     """Old marble in the open: grey and ochre lichen, pits and cracks."""
-    rgb = _mix((140, 134, 122), (220, 212, 194), 0.5 + 0.3 * noise(81, SIZE, 2, 60, 0.9))
+    rgb = _mix((176, 170, 158), (232, 226, 212), 0.5 + 0.3 * noise(81, SIZE, 2, 60, 0.9))
     ochre = np.clip(noise(82, SIZE, 3, 40, 0.9) - 0.9, 0.0, 1.0)[..., None] * 0.6
     rgb = rgb * (1.0 - ochre) + np.array((176, 146, 88)) * ochre
     pits = np.clip((np.abs(noise(83, SIZE, 6, 90, 1.0)) - 0.12) * 5.0, 0.0, 1.0)
-    return _painted(rgb * (0.66 + 0.34 * pits)[..., None] + 7.0 * noise(84, SIZE, 50, 250, 0.2)[..., None])
+    return _painted(rgb * (0.76 + 0.24 * pits)[..., None] + 7.0 * noise(84, SIZE, 50, 250, 0.2)[..., None])
 
 
 def scrub() -> Texture:
     """A hillside from afar: maquis, dry grass and limestone."""
     bushes = noise(91, SIZE, 8, 90, 0.5)
-    rgb = _mix((92, 96, 62), (176, 160, 118), 0.5 - 0.42 * bushes + 0.15 * noise(92, SIZE, 1, 10, 1.0))
+    rgb = _mix((98, 100, 70), (182, 168, 132), 0.5 - 0.42 * bushes + 0.15 * noise(92, SIZE, 1, 10, 1.0))
     rock = np.clip((noise(93, SIZE, 6, 80, 0.5) - 1.5) * 1.6, 0.0, 1.0)[..., None]
     return _painted(rgb * (1.0 - rock) + np.array((196, 188, 172)) * rock)
 
 
 def leaves() -> Texture:
     """Foliage in light and shade."""
-    rgb = _mix((34, 44, 24), (116, 124, 76), 0.45 + 0.33 * noise(101, SIZE, 12, 160, 0.3))
+    rgb = _mix((78, 86, 52), (158, 160, 108), 0.45 + 0.33 * noise(101, SIZE, 12, 160, 0.3))
     return _painted(rgb + 8.0 * noise(102, SIZE, 60, 250, 0.1)[..., None])
+
+
+def straw() -> Texture:
+    """Blades of dry grass."""
+    return _painted(_mix((176, 156, 104), (226, 208, 156), 0.5 + 0.3 * noise(105, 128, 2, 50, 0.4)))
 
 
 def wood() -> Texture:

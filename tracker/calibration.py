@@ -18,6 +18,10 @@ REST_GYRO_MEAN_RAD_S = 0.03
 #: ... and the length of the specific force spreads no wider than this, m/s2: a step shows 1 to 3.
 REST_ACCEL_STD_M_S2 = 0.25
 REST_BLOCK_S = 0.5
+#: A hand that holds a phone, or begins to turn, looks still for half a second: fewer blocks than this in a row are no rest.
+REST_BLOCKS = 5
+#: What a gyroscope's offset may be before anything was measured, rad/s: a standing person's sway must not be taken for one.
+OFFSET_SIGMA_RAD_S = 0.006
 
 
 class RestCalibration:
@@ -25,6 +29,9 @@ class RestCalibration:
 
     Samples are judged in blocks of half a second. Blocks at rest are averaged until 5000 samples are in or the rig moves;
     then the offset stands for good, as in the paper. A walk that starts in motion has offset zero until a first rest.
+
+    On a table the blocks agree and their mean is the offset. A person who stands sways, the blocks scatter, and the mean is
+    believed only as far as its standard error allows against what offsets usually are.
     """
 
     def __init__(self) -> None:
@@ -33,6 +40,8 @@ class RestCalibration:
         """How many samples the offset rests on."""
         self.finished = False
         self._block: list[ImuSample] = []
+        self._rest: list[tuple[int, Vector3]] = []
+        """Size and mean of each block of this rest."""
 
     def step(self, sample: ImuSample) -> None:
         """Take one raw sample."""
@@ -44,13 +53,22 @@ class RestCalibration:
         block, self._block = self._block, []
         if not _at_rest(block):
             self.finished = self.samples > 0
+            self._rest.clear()
             return
-        total = self.samples + len(block)
-        old = self.gyro_offset_rad_s
-        sums = [sum(s.gyro_rad_s[axis] for s in block) for axis in range(3)]
-        x, y, z = ((old[axis] * self.samples + sums[axis]) / total for axis in range(3))
-        self.gyro_offset_rad_s, self.samples = (x, y, z), total
-        self.finished = total >= REST_SAMPLES
+        x, y, z = (sum(s.gyro_rad_s[axis] for s in block) / len(block) for axis in range(3))
+        self._rest.append((len(block), (x, y, z)))
+        if len(self._rest) < REST_BLOCKS:
+            return
+        self.samples = sum(size for size, _ in self._rest)
+        x, y, z = (_believed([mean[axis] for _, mean in self._rest]) for axis in range(3))
+        self.gyro_offset_rad_s = (x, y, z)
+        self.finished = self.samples >= REST_SAMPLES
+
+
+def _believed(means: list[float]) -> float:
+    """Return the mean of some blocks' means, drawn towards zero by how little they agree."""
+    mean, std = _mean_std(means)
+    return mean * OFFSET_SIGMA_RAD_S**2 / (OFFSET_SIGMA_RAD_S**2 + std**2 / (len(means) - 1))
 
 
 def _at_rest(block: list[ImuSample]) -> bool:

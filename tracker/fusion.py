@@ -67,6 +67,11 @@ class FusionFilter:
         for axis in (3, 4, 5):
             self.value[axis] = wrap_rad(self.value[axis])
 
+    def widen(self, position_var_m2: float) -> None:
+        """Doubt the position: after an outage it may be off by more than the measurements that were carried over it said."""
+        for axis in range(3):
+            self.var_value[axis] += position_var_m2
+
     def innovation(self, position_m: Vector3 | None, rotation_rad: Vector3) -> tuple[Vector3 | None, Vector3]:
         """Return y = z - H x, eq. 13, in its two parts; angles by the shorter way round."""
         x, y, z, roll, pitch, yaw = self.value

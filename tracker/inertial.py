@@ -86,7 +86,7 @@ class InertialPath:
     def _expected(self) -> Vector3:
         return self._pace.velocity_m_s(self._yaw_offset) if self._yaw_offset_rad is not None else (0.0, 0.0, 0.0)
 
-    def correct_velocity(self, t_ns: int, v_site_m_s: Vector3) -> None:
+    def correct_velocity(self, t_ns: int, v_site_m_s: Vector3, share=None) -> None:
         """Take a velocity known at t_ns, now or in the past: what was integrated since then moves on with it."""
         then = self.at(t_ns)
         if then is None:
@@ -94,7 +94,7 @@ class InertialPath:
         since_s = (t_ns - self._known_ns) * 1e-9 if self._known_ns is not None else TRUSTED_S
         if since_s <= 0.0:
             return
-        share = share_of(since_s, VELOCITY_S)
+        share = share_of(since_s, VELOCITY_S) if share is None else share
         dx, dy, dz = (share * (new - old) for new, old in zip(v_site_m_s, then.v_m_s, strict=True))
         states = self._states
         for index in range(len(states) - 1, -1, -1):

@@ -6,10 +6,9 @@ Where the text is silent or its literal equation breaks, this takes the readings
 - m_R is Madgwick's attitude turned to north once at the start.
 - m_P is the last fix, carried on by the camera's motion since the keyframe nearest that fix (camera), and by the doubly
   integrated specific force since then (what the camera has not covered, or everything without one).
-- The essential matrix gives no length, so the camera's step is as long as the filter's speed makes it.
+- The essential matrix gives no length, so the camera's step is as long as the IMU's over the same time.
 """
 
-from collections import deque
 from copy import deepcopy
 from dataclasses import dataclass, field
 from math import hypot, isfinite, pi, sqrt
@@ -18,7 +17,10 @@ import numpy as np
 
 from tracker.attitude import Madgwick
 from tracker.calibration import MeanSample, RestCalibration, SampleMean
+from tracker.camera_path import CameraPath, Sight
+from tracker.course import CourseOverGround
 from tracker.estimator import Innovation, Origin, Pose, Snapshot
+from tracker.fix_gate import FixGate
 from tracker.fusion import FusionFilter, FusionSettings
 from tracker.geodesy import SiteFrame, gravity_m_s2
 from tracker.geometry import (
@@ -36,6 +38,7 @@ from tracker.inertial import InertialPath
 from tracker.measurements import (
     CompassHeading,
     GpsFix,
+    GpsVelocity,
     ImuSample,
     MagSample,
     Matrix,
@@ -47,7 +50,6 @@ from tracker.measurements import (
 )
 from tracker.motion import MotionSelector
 from tracker.rig import Rig
-from tracker.transformation import transformation
 
 
 @dataclass(frozen=True)
@@ -67,29 +69,24 @@ class PaperSettings:
     fastest_walk_m_s: float = 2.0
     outage_speed_m_s: float = 0.5
     """An old fix is off by this much more for every second of its age."""
-    impossible_speed_m_s: float = 40.0
-    """A fix that needs more, beyond 50 m, is an outlier; five in a row are believed."""
+    velocity_held_s: float = 3.0
+    """A receiver that has told no velocity for this long tells none: the filter's own is used."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Fix:
     t_ns: int
+    t_recv_ns: int
     p_site_m: Vector3
     var_m2: Vector3
+    path_m: Vector3
+    """The inertial path's place then, from which it carries the fix on."""
+    sight: Sight | None
+    """The picture nearest to it, from which the camera does."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Sight:
-    """A picture on the camera's own path: where it was by the chain of keyframes, and how it looked (site from camera)."""
-
-    t_ns: int
-    p_m: Vector3
-    R_site_cam: Matrix
-
-
-_OUTLIERS_BELIEVED = 5
-_SIGHTS = 64
 _FASTEST_CLOCK_NS = 2_000_000_000
+_FASTEST_M_S = 100.0
 
 
 class PaperEstimator:
@@ -133,6 +130,8 @@ class PaperEstimator:
                 return self._step_fix(measurement)
             case VisualMotion() if self._uses_camera:
                 return self._step_vision(measurement)
+            case GpsVelocity():
+                return self._step_velocity(measurement)
             case MagSample() | CompassHeading():
                 return self._step_heading(measurement)
             case _:
@@ -165,6 +164,10 @@ class PaperEstimator:
             return  # a rig in free fall has no up
         q = s.attitude.update(gyro, mean.accel_m_s2, mean.dt_s)
         s.path.step(MeanSample(mean.t_ns, mean.dt_s, gyro, mean.accel_m_s2), q, s.heading.yaw_offset_rad)
+        if s.compass_waiting is not None:
+            # a phone tells its heading when it changes: one that was told before the first inertial sample still holds
+            s.heading.compass(mean.t_ns, s.compass_waiting.yaw_rad, q)
+            s.compass_waiting = None
         if s.filter is None:
             self._start(mean.t_ns)
         elif mean.t_ns - s.cycle_ns >= self._settings.cycle_s * 1e9 - 1e6:
@@ -196,15 +199,16 @@ class PaperEstimator:
             s.innovations.append(Innovation(t_ns, y_p, y_r, str(s.model)))
             s.model = self._selector.following(hypot(*y_p), hypot(*y_r), s.model)
         s.cycle_ns = t_ns
-        if s.fix_is_new:
-            s.path.reset_velocity(s.filter.velocity_m_s)
-            s.fix_is_new = False
+        if 0 and s.fix_is_new and (s.velocity is None or t_ns - s.velocity.t_ns > self._settings.velocity_held_s * 1e9):
+            s.path.correct_velocity(t_ns, s.filter.velocity_m_s)
+        s.fix_is_new = False
 
     def _turn_to_north(self, filter_: FusionFilter) -> None:
-        """When north becomes known the whole past was turned by a constant: that is no innovation."""
+        """When north becomes known, or better known, the whole past was turned by a constant: that is no innovation."""
         s = self._state
-        if s.heading.yaw_offset_rad is not None and s.filter_yaw_offset_rad is None:
-            filter_.value[5] = wrap_rad(filter_.value[5] + s.heading.yaw_offset_rad)
+        if s.heading.yaw_offset_rad != s.filter_yaw_offset_rad:
+            turn_rad = (s.heading.yaw_offset_rad or 0.0) - (s.filter_yaw_offset_rad or 0.0)
+            filter_.value[5] = wrap_rad(filter_.value[5] + turn_rad)
             s.filter_yaw_offset_rad = s.heading.yaw_offset_rad
 
     def _measured_rotation(self, t_ns: int) -> Vector3:
@@ -223,18 +227,14 @@ class PaperEstimator:
         s = self._state
         if s.fix is None:
             raise RuntimeError("a cycle needs a fix")
-        moved = (0.0, 0.0, 0.0)
-        since_ns = s.fix.t_ns
-        if s.sights and s.sights[-1].t_ns > since_ns:
-            nearest = min(s.sights, key=lambda sight: abs(sight.t_ns - since_ns))
-            last = s.sights[-1]
-            if last is not nearest:
-                moved = _difference(last.p_m, nearest.p_m)
-                since_ns = last.t_ns
-        inertial = s.path.displacement_m(since_ns, t_ns)
+        sight, last = s.fix.sight, s.camera.newest
+        if sight is not None and last is not None and last is not sight:
+            moved, inertial = _difference(last.p_m, sight.p_m), s.path.displacement_m(last.t_ns, t_ns)
+        else:
+            here = s.path.at(t_ns)
+            moved, inertial = (0.0, 0.0, 0.0), _difference(here.p_m, s.fix.path_m) if here else (0.0, 0.0, 0.0)
         x, y, z = (p + m + i for p, m, i in zip(s.fix.p_site_m, moved, inertial, strict=True))
-        age_s = max(0.0, (t_ns - s.fix.t_ns) * 1e-9 - 1.0)
-        more = (self._settings.outage_speed_m_s * age_s) ** 2
+        more = self._drift_var_m2(t_ns)
         vx, vy, vz = s.fix.var_m2
         return (x, y, z), (vx + more, vy + more, vz + more)
 
@@ -251,18 +251,48 @@ class PaperEstimator:
         if old is not None:
             if fix.t_ns <= old.t_ns:
                 return Outcome.REJECTED_STALE
-            dt_s = (fix.t_ns - old.t_ns) * 1e-9
-            if (
-                hypot(*_difference(p, old.p_site_m)) > 50.0 + self._settings.impossible_speed_m_s * dt_s
-                and s.outliers < _OUTLIERS_BELIEVED
-            ):
-                s.outliers += 1
+            dt_ns = fix.t_ns - old.t_ns
+            if dt_ns > fix.t_recv_ns - old.t_recv_ns + _FASTEST_CLOCK_NS:
                 return Outcome.REJECTED_GATE
-            if s.outliers == _OUTLIERS_BELIEVED and s.filter is not None:
-                s.filter.value[:3] = p
-        s.outliers = 0
-        s.fix, s.fix_is_new = _Fix(fix.t_ns, p, self._variance(fix)), True
-        self._course(s.fix)
+            if s.gate.refuses(old.p_site_m, p, dt_ns * 1e-9):
+                return Outcome.REJECTED_GATE
+            insisted = s.gate.insisted()
+            if s.filter is not None:
+                s.filter.widen(self._drift_var_m2(fix.t_ns))
+                if insisted:
+                    s.filter.value[:3] = p
+        then = s.path.at(fix.t_ns)
+        path_m = then.p_m if then else (0.0, 0.0, 0.0)
+        if old is not None and then is not None and (s.velocity is None or fix.t_ns - s.velocity.t_ns > self._settings.velocity_held_s * 1e9):
+            import os
+            dt=dt_ns*1e-9
+            k=float(os.environ.get('K','.35'))*min(1,dt)
+            if dt<3:
+                e=[(a-b-(c-d))/dt*k for a,b,c,d in zip(p,old.p_site_m,path_m,old.path_m)]
+                v=tuple(a+b for a,b in zip(then.v_m_s,e))
+                s.path.correct_velocity(fix.t_ns, v, 1.0)
+        s.fix = _Fix(fix.t_ns, fix.t_recv_ns, p, self._variance(fix), path_m, s.camera.near(fix.t_ns))
+        s.fix_is_new = True
+        if s.velocity is None or fix.t_ns - s.velocity.t_ns > self._settings.velocity_held_s * 1e9:
+            s.course.fix(fix.t_ns, p, s.path, s.heading)
+        return Outcome.USED
+
+    def _drift_var_m2(self, t_ns: int) -> float:
+        """How far dead reckoning may have gone astray since the last fix, beyond the usual second between two."""
+        fix = self._state.fix
+        age_s = max(0.0, (t_ns - fix.t_ns) * 1e-9 - 1.0) if fix is not None else 0.0
+        return (self._settings.outage_speed_m_s * age_s) ** 2
+
+    def _step_velocity(self, velocity: GpsVelocity) -> Outcome:
+        """The receiver's own velocity is the integral's v(0); its gains, and its course, tell the start heading."""
+        s = self._state
+        if not all(map(isfinite, velocity.v_enu_m_s)) or hypot(*velocity.v_enu_m_s) > _FASTEST_M_S:
+            return Outcome.REJECTED_NOT_FINITE
+        if s.velocity is not None and velocity.t_ns <= s.velocity.t_ns:
+            return Outcome.REJECTED_STALE
+        s.velocity = velocity
+        s.path.correct_velocity(velocity.t_ns, velocity.v_enu_m_s)
+        s.course.velocity(velocity, s.path, s.heading)
         return Outcome.USED
 
     def _variance(self, fix: GpsFix) -> Vector3:
@@ -274,68 +304,46 @@ class PaperEstimator:
         )
         return x, y, z
 
-    def _course(self, fix: _Fix) -> None:
-        """Give the heading a course over about a second: between closer fixes it would be noise."""
-        s = self._state
-        old = s.course_from
-        if s.heading.yaw_offset_rad is not None or (old is not None and fix.t_ns - old.t_ns < 0.9e9):
-            return
-        s.course_from = fix
-        middle = s.path.at((fix.t_ns + old.t_ns) // 2) if old else None
-        if old is not None and middle is not None and fix.t_ns - old.t_ns < 3e9:
-            dt_s = (fix.t_ns - old.t_ns) * 1e-9
-            vx, vy, vz = (d / dt_s for d in _difference(fix.p_site_m, old.p_site_m))
-            s.heading.course((vx, vy, vz), middle.wxyz_level_body)
-
     # -- heading and camera -------------------------------------------------------------------------------------------
 
     def _step_heading(self, measurement: MagSample | CompassHeading) -> Outcome:
         s = self._state
-        if s.heading.yaw_offset_rad is not None:
+        if s.heading.is_final:
             return Outcome.IGNORED  # the paper: once at the start, then six axes
         state = s.path.at(measurement.t_ns)
-        if state is None:
-            return Outcome.WAITING
         if isinstance(measurement, CompassHeading):
             if not isfinite(measurement.yaw_rad):
                 return Outcome.REJECTED_NOT_FINITE
+            if state is None:
+                s.compass_waiting = measurement
+                return Outcome.WAITING
             s.heading.compass(measurement.t_ns, measurement.yaw_rad, state.wxyz_level_body)
             return Outcome.USED
         if not all(map(isfinite, measurement.field_body_t)):
             return Outcome.REJECTED_NOT_FINITE
+        if state is None:
+            return Outcome.WAITING
         s.heading.magnetometer(measurement.t_ns, measurement.field_body_t, state.wxyz_level_body)
         return Outcome.USED
 
     def _step_vision(self, motion: VisualMotion) -> Outcome:
-        """Chain the camera's path: each picture stands off its keyframe by Tr, its translation as long as the filter's speed."""
+        """Chain the camera's path. The essential matrix gives its direction, the IMU its length."""
         s = self._state
         if s.filter is None or s.heading.yaw_offset_rad is None:
             return Outcome.WAITING
-        if s.sights and motion.t_ns <= s.sights[-1].t_ns:
+        last = s.camera.newest
+        if last is not None and motion.t_ns <= last.t_ns:
             return Outcome.REJECTED_STALE
-        key = next((sight for sight in reversed(s.sights) if sight.t_ns == motion.t_key_ns), None)
+        key = s.camera.held(motion.t_key_ns)
         if key is None:
-            key = self._sight(motion.t_key_ns)
-        speed = min(hypot(*s.filter.velocity_m_s[:2]), self._settings.fastest_walk_m_s)
-        length = speed * (motion.t_ns - motion.t_key_ns) * 1e-9
-        dx, dy, dz = motion.direction_key
-        Tr = transformation(motion.R_key_cam, (dx * length, dy * length, dz * length))
-        x, y, z = (float(v) for v in key.R_site_cam @ Tr[:3, 3])
-        here = self._sight(motion.t_ns)
-        s.sights.append(
-            _Sight(motion.t_ns, (key.p_m[0] + x, key.p_m[1] + y, key.p_m[2] + z), here.R_site_cam),
-        )
+            key = s.camera.begin(motion.t_key_ns, self._R_site_cam(motion.t_key_ns), s.path)
+        walked_m = hypot(*s.path.displacement_m(motion.t_key_ns, motion.t_ns)[:2])
+        length_m = min(walked_m, self._settings.fastest_walk_m_s * (motion.t_ns - motion.t_key_ns) * 1e-9)
+        s.camera.chain(motion, key, length_m, self._R_site_cam(motion.t_ns))
         return Outcome.USED
 
-    def _sight(self, t_ns: int) -> _Sight:
-        """Put a picture that nothing is chained to at the end of the camera's path, carried on by the IMU."""
-        s = self._state
-        R = matrix_from_wxyz(self._dead_reckoned_attitude(t_ns)) @ self._R_body_cam
-        if not s.sights:
-            return _Sight(t_ns, (0.0, 0.0, 0.0), R)
-        last = s.sights[-1]
-        x, y, z = (p + d for p, d in zip(last.p_m, s.path.displacement_m(last.t_ns, t_ns), strict=True))
-        return _Sight(t_ns, (x, y, z), R)
+    def _R_site_cam(self, t_ns: int) -> Matrix:
+        return matrix_from_wxyz(self._dead_reckoned_attitude(t_ns)) @ self._R_body_cam
 
     # -- answers ------------------------------------------------------------------------------------------------------
 
@@ -351,8 +359,8 @@ class PaperEstimator:
         turned = multiply(conjugate(cycle.wxyz_level_body), then.wxyz_level_body)
         q = multiply(wxyz_from_rpy(s.filter.rpy_rad), turned)
         yaw_rad = s.heading.yaw_offset_rad
-        if yaw_rad is not None and s.filter_yaw_offset_rad is None:
-            q = multiply(wxyz_from_yaw(yaw_rad), q)
+        if yaw_rad is not None and yaw_rad != s.filter_yaw_offset_rad:
+            q = multiply(wxyz_from_yaw(yaw_rad - (s.filter_yaw_offset_rad or 0.0)), q)
         return Pose(
             t_ns, (x, y, z), normalise(q), then.v_m_s, self._covariance(t_ns), str(s.model), yaw_rad is not None
         )
@@ -363,8 +371,7 @@ class PaperEstimator:
         s, settings = self._state, self._settings
         if s.filter is None or s.fix is None:
             raise RuntimeError("no pose yet")
-        age_s = max(0.0, (t_ns - s.fix.t_ns) * 1e-9 - 1.0)
-        drift = (settings.outage_speed_m_s * age_s) ** 2
+        drift = self._drift_var_m2(t_ns)
         heading = settings.heading_sigma_rad if s.heading.yaw_offset_rad is not None else pi / sqrt(3.0)
         rotation = (settings.tilt_sigma_rad**2, settings.tilt_sigma_rad**2, heading**2)
         position = (v + fix + drift for v, fix in zip(s.filter.var_value[:3], s.fix.var_m2, strict=True))
@@ -401,9 +408,11 @@ class _State:
         self.imu_recv_ns = 0
         self.fix: _Fix | None = None
         self.fix_is_new = False
-        self.outliers = 0
-        self.course_from: _Fix | None = None
-        self.sights: deque[_Sight] = deque(maxlen=_SIGHTS)
+        self.gate = FixGate()
+        self.velocity: GpsVelocity | None = None
+        self.course = CourseOverGround()
+        self.compass_waiting: CompassHeading | None = None
+        self.camera = CameraPath()
         self.innovations: list[Innovation] = []
 
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import signal
 import socket
@@ -96,11 +97,11 @@ def test_a_port_in_use_is_one_sentence(walk: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("[origin]", "[origin", ("site.toml", "TOML")),
+        (r"\[origin\]", "[origin", ("site.toml", "TOML")),
         ("lat_deg = 37.9366", "", ("site.toml", "origin.lat_deg")),
         ("lat_deg = 37.9366", "lat_deg = 379.366", ("site.toml", "origin.lat_deg", "-90")),
         ("lat_deg = 37.9366", 'lat_deg = "north"', ("site.toml", "origin.lat_deg", "number")),
-        ("fine_step_m = 5.0", "fine_step_m = 0.0", ("site.toml", "terrain.fine_step_m")),
+        (r"fine_step_m = [\d.]+", "fine_step_m = 0.0", ("site.toml", "terrain.fine_step_m")),
     ],
 )
 def test_a_broken_site_is_one_sentence(
@@ -109,8 +110,9 @@ def test_a_broken_site_is_one_sentence(
     broken = tmp_path / "broken"
     shutil.copytree(site, broken)
     text = (broken / "site.toml").read_text(encoding="utf-8")
-    assert old in text
-    (broken / "site.toml").write_text(text.replace(old, new), encoding="utf-8")
+    changed, count = re.subn(old, new, text)
+    assert count == 1
+    (broken / "site.toml").write_text(changed, encoding="utf-8")
     for arguments in (("build", broken), ("simulate", tmp_path / "out.mcap", "--site", broken)):
         result = agora(*arguments)
         assert result.returncode == 2

@@ -22,7 +22,8 @@ const WELL: Situation = {
   hasPose: true,
   headingKnown: true,
   notice: null,
-  modelFailed: false,
+  asked: null,
+  model: "shown",
 };
 const MODELS = [0, 1, 2].flatMap((i) => [0, 1, 2].map((j) => `P${i}R${j}`));
 
@@ -38,9 +39,10 @@ const TROUBLES: readonly (readonly [Partial<Situation>, RegExp])[] = [
   [{ connection: "lost" }, /connection is lost/],
   [{ connection: "connecting" }, /^Connecting/],
   [{ sincePicture_ms: null }, /No pictures/],
-  [{ modelFailed: true }, /model of the square could not/],
+  [{ model: "failed" }, /model of the square could not/],
   [{ hasPose: false }, /Finding out where you are/],
   [{ headingKnown: false }, /find north/],
+  [{ model: "loading" }, /^The square is on its way/],
   [{ notice: "A notice." }, /A notice/],
 ];
 
@@ -61,10 +63,16 @@ test("every sentence is one sentence, in plain words", () => {
   }
 });
 
+test("a walk that the address names is named where there is none", () => {
+  const sentence = sentenceFor({ ...WELL, connection: "no session", asked: "tuesday" });
+  expect(sentence).toMatch(/^There is no walk named tuesday here/);
+});
+
 test("a page that has just opened waits before it complains", () => {
   const fresh = { ...WELL, sinceOpened_ms: 100, sincePicture_ms: null };
   expect(sentenceFor(fresh)).toBeNull();
   expect(sentenceFor({ ...fresh, connection: "connecting" })).toBeNull();
+  expect(sentenceFor({ ...fresh, sincePicture_ms: 20, model: "loading" })).toBeNull();
 });
 
 test("pictures that stay away are missed while playing, not while pausing", () => {

@@ -2,7 +2,7 @@
 
 import { Bar } from "./bar";
 import { Composite } from "./composite";
-import { canDraw, element } from "./dom";
+import { canDraw, element, publishNothing } from "./dom";
 import { invertRigid, T_gltf_site, transform, type Vector3 } from "./frames";
 import { Hud } from "./hud";
 import { project } from "./lens";
@@ -10,8 +10,8 @@ import { loadSquare } from "./model";
 import type { Request } from "./playback";
 import { parseSessions, parseSite, parseState, type Session } from "./protocol";
 import { Link } from "./socket";
-import { decodeFrame, type FrameMessage, magicOf, WireError } from "./wire";
-import type { Connection } from "./words";
+import { type CameraPose, decodeFrame, type FrameMessage, magicOf, WireError } from "./wire";
+import type { Connection, Situation } from "./words";
 
 /** The real ground is there already: the model's is only a hint of its paving. */
 const GROUND_SHARE = 0.25;
@@ -34,7 +34,8 @@ class Page {
   private decoding = false;
   private shown: ImageBitmap | null = null;
   private lastPicture_ms: number | null = null;
-  private modelFailed = false;
+  private model: Situation["model"] = "loading";
+  private readonly asked = askedName();
   private requests = 0;
   private firstFrame: () => void = () => undefined;
 
@@ -60,20 +61,22 @@ class Page {
       if (url === undefined) throw new Error("no model named roman");
       this.composite.show(await loadSquare(url, GROUND_SHARE));
       this.composite.redraw();
+      this.model = "shown";
     } catch (error) {
-      this.modelFailed = true;
+      this.model = "failed";
       console.warn("the model could not be loaded", error);
     }
   }
 
   private async join(): Promise<void> {
-    const name = await sessionName();
+    const name = this.asked ?? (await newestName());
     if (name === null) {
       this.connection = "no session";
       window.setTimeout(() => void this.join(), LOOK_AGAIN_MS);
       return;
     }
     element("walk", HTMLElement).textContent = name;
+    document.title = `${name} · Agora`;
     const url = new URL(`/ws/view/${encodeURIComponent(name)}${location.search}`, location.href);
     url.protocol = url.protocol.replace("http", "ws");
     this.link = new Link(url.href, {
@@ -142,41 +145,52 @@ class Page {
       this.waiting = null;
       this.draw(next.message, next.bitmap, next.arrived_ms, now_ms);
     }
-    this.hud.show(this.frame, now_ms);
+    const playing = this.session?.playback?.playing ?? true;
+    this.hud.show(this.frame, playing, now_ms);
     this.hud.say({
       connection: this.connection,
       kind: this.session?.kind ?? "replay",
-      playing: this.session?.playback?.playing ?? true,
+      playing,
       sincePicture_ms: this.lastPicture_ms === null ? null : now_ms - this.lastPicture_ms,
       sinceOpened_ms: now_ms,
       hasPose: this.frame?.pose != null,
       headingKnown: this.frame?.pose?.headingKnown ?? false,
       notice: this.session?.notice ?? null,
-      modelFailed: this.modelFailed,
+      model: this.model,
+      asked: this.asked,
     });
   }
 
   private draw(message: FrameMessage, bitmap: ImageBitmap, arrived_ms: number, now_ms: number): void {
-    const { pose } = message;
-    const fits = pose !== null && pose.frameId === message.frameId;
-    if (pose !== null && !fits) this.mismatched += 1;
+    this.frame = message;
+    const { pose, locked } = this;
     this.composite.draw({
       bitmap,
       lens: message.lens,
       quarterTurns: message.quarterTurns,
-      T_site_cam: pose && fits && pose.headingKnown ? pose.T_site_cam : null,
+      T_site_cam: locked?.headingKnown ? locked.T_site_cam : null,
     });
     this.shown?.close();
     this.shown = bitmap;
-    this.frame = message;
+    document.body.classList.remove("empty");
     this.framesDrawn += 1;
-    if (fits) this.posesDrawn += 1;
+    if (locked) this.posesDrawn += 1;
+    else if (pose) this.mismatched += 1;
     this.lastPicture_ms = now_ms;
     this.hud.rate.count(now_ms);
     this.hud.age.drawn(message.t_sent_ns, arrived_ms);
     this.bar.at(message.position_s);
     this.acknowledge(message.frameId);
     this.firstFrame();
+  }
+
+  get pose(): CameraPose | null {
+    return this.frame?.pose ?? null;
+  }
+
+  /** The pose of the picture that is drawn now, never that of another one. */
+  get locked(): CameraPose | null {
+    return this.pose?.frameId === this.frame?.frameId ? this.pose : null;
   }
 
   private ask(request: Request): void {
@@ -193,10 +207,13 @@ class Page {
     fill();
     past.oninput = () => this.setPast(Number(past.value) / 100);
     this.setPast(Number(past.value) / 100);
-    window.addEventListener("keydown", ({ key, ctrlKey, metaKey }) => {
-      if (key === "h" && !ctrlKey && !metaKey) document.body.classList.toggle("clean");
+    const { classList } = document.body;
+    element("hide", HTMLButtonElement).onclick = () => classList.add("clean");
+    canvas.onclick = () => classList.remove("clean");
+    window.addEventListener("keydown", ({ key, ctrlKey, metaKey, target }) => {
+      // a list of choices jumps to the letter that is typed
+      if (key === "h" && !ctrlKey && !metaKey && !(target instanceof HTMLSelectElement)) classList.toggle("clean");
     });
-    canvas.focus();
   }
 
   setPast(share: number): void {
@@ -205,12 +222,14 @@ class Page {
   }
 }
 
-/** Return the session of the address, else the newest one; null where there is none. */
-async function sessionName(): Promise<string | null> {
+/** Return the session that the address names, if it names one. */
+function askedName(): string | null {
   const replay = /^\/replay\/([^/]+)\/?$/.exec(location.pathname)?.[1];
-  if (replay !== undefined) return decodeURIComponent(replay);
-  const asked = new URLSearchParams(location.search).get("session");
-  if (asked !== null) return asked;
+  return replay === undefined ? new URLSearchParams(location.search).get("session") : decodeURIComponent(replay);
+}
+
+/** Return the newest session; null where there is none. */
+async function newestName(): Promise<string | null> {
   try {
     const sessions = parseSessions(await (await fetch("/api/sessions")).json());
     return sessions.at(-1)?.name ?? null;
@@ -228,24 +247,21 @@ function publish(page: Page): void {
       posesDrawn: page.posesDrawn,
       mismatchedFrames: page.mismatched,
       lastFrameId: page.frame?.frameId ?? null,
-      lastPoseFrameId: page.frame?.pose?.frameId ?? null,
+      lastPoseFrameId: page.pose?.frameId ?? null,
       poseAgeMs: page.hud.age.at(performance.now()),
-      motionModel: page.frame?.pose?.motionModel ?? null,
-      estimator: page.frame?.pose?.estimator ?? null,
-      overlay: page.frame?.pose ? "locked" : "none",
+      motionModel: page.pose?.motionModel ?? null,
+      estimator: page.pose?.estimator ?? null,
+      overlay: page.locked?.headingKnown ? "locked" : "none",
       drawCalls: page.composite.cost.calls,
       triangles: page.composite.cost.triangles,
     }),
     project: (point: Vector3) => {
-      const frame = page.frame;
-      if (!frame?.pose) return null;
-      return project(frame.lens, transform(invertRigid(frame.pose.T_site_cam), point));
+      const { frame, locked } = page;
+      return frame && locked ? project(frame.lens, transform(invertRigid(locked.T_site_cam), point)) : null;
     },
     pose: () => {
-      const pose = page.frame?.pose;
-      return pose
-        ? { t_ns: pose.t_ns, frameId: pose.frameId, T_site_cam: pose.T_site_cam, cov: pose.covariance }
-        : null;
+      const { pose } = page;
+      return pose && { t_ns: pose.t_ns, frameId: pose.frameId, T_site_cam: pose.T_site_cam, cov: pose.covariance };
     },
     session: () => page.session,
     setPast: (share: number) => page.setPast(share),
@@ -262,3 +278,4 @@ function publish(page: Page): void {
 }
 
 if (canDraw(element("notice", HTMLElement))) publish(new Page());
+else publishNothing();

@@ -8,12 +8,13 @@ export class Bar {
   private readonly form = element("bar", HTMLFormElement);
   private readonly play = element("play", HTMLButtonElement);
   private readonly seek = element("seek", HTMLInputElement);
-  private readonly clock = element("clock", HTMLOutputElement);
-  private readonly length = element("length", HTMLOutputElement);
+  private readonly clock = element("clock", HTMLElement);
+  private readonly length = element("length", HTMLElement);
   private readonly speed = element("speed", HTMLSelectElement);
   private readonly estimator = element("estimator", HTMLSelectElement);
   private session: Session | null = null;
   private dragging = false;
+  private listed = "";
   private readonly ask: (request: Request) => void;
 
   constructor(ask: (request: Request) => void) {
@@ -22,7 +23,7 @@ export class Bar {
     this.play.onclick = () => this.request({ action: this.playing ? "pause" : "play", value: null });
     this.seek.oninput = () => {
       this.dragging = true;
-      this.clock.textContent = clockText(Number(this.seek.value));
+      this.showClock(Number(this.seek.value));
     };
     this.seek.onchange = () => {
       this.dragging = false;
@@ -40,7 +41,9 @@ export class Bar {
     this.form.hidden = session.playback === null;
     if (session.playback === null) return;
     this.play.dataset["playing"] = String(session.playback.playing);
-    this.play.setAttribute("aria-label", session.playback.playing ? "Pause" : "Play");
+    const verb = session.playback.playing ? "Pause" : "Play";
+    this.play.setAttribute("aria-label", verb);
+    this.play.title = `${verb} (space)`;
     this.seek.max = String(session.duration_s);
     this.length.textContent = clockText(session.duration_s);
     const { speed } = session.playback;
@@ -55,8 +58,15 @@ export class Bar {
   at(position_s: number): void {
     if (this.dragging) return;
     this.seek.value = String(position_s);
-    this.clock.textContent = clockText(position_s);
+    this.showClock(position_s);
     if (this.session?.playback) this.session = { ...this.session, playback: { ...this.session.playback, position_s } };
+  }
+
+  private showClock(position_s: number): void {
+    const text = clockText(position_s);
+    if (this.clock.textContent === text) return;
+    this.clock.textContent = text;
+    this.seek.setAttribute("aria-valuetext", `${text} of ${this.length.textContent}`);
   }
 
   private get playing(): boolean {
@@ -65,25 +75,23 @@ export class Bar {
 
   private showEstimators(session: Session): void {
     const choices = estimatorChoices(session);
-    const options = choices.map(({ name, reason }) => {
-      const option = new Option(name, name, false, name === session.estimator);
-      option.disabled = reason !== null;
-      option.title = reason ?? "";
-      return option;
-    });
-    this.estimator.replaceChildren(...options);
-    this.estimator.title = choices.flatMap(({ name, reason }) => (reason ? [`${name}: ${reason}`] : [])).join("\n");
+    const listed = JSON.stringify(choices);
+    // options that are replaced would close a list that is open
+    if (listed !== this.listed) {
+      const options = choices.map(({ name, reason }) => {
+        const option = new Option(reason === null ? name : `${name}: ${reason}`, name);
+        option.disabled = reason !== null;
+        return option;
+      });
+      this.estimator.replaceChildren(...options);
+    }
+    this.listed = listed;
+    this.estimator.value = session.estimator;
   }
 
   private key(event: KeyboardEvent): void {
-    const { target } = event;
     if (event.ctrlKey || event.metaKey || event.altKey || !this.session?.playback) return;
-    if (
-      target instanceof HTMLSelectElement ||
-      target instanceof HTMLButtonElement ||
-      target instanceof HTMLInputElement
-    )
-      return;
+    if (isTheirs(event, this.seek)) return;
     const request = requestOfKey(event.key, event.shiftKey, this.session.playback, this.session.duration_s);
     if (request === null) return;
     event.preventDefault();
@@ -93,4 +101,11 @@ export class Bar {
   private request(request: Request): void {
     this.ask(request);
   }
+}
+
+/** Whether the focused element has a use of its own for the key. */
+function isTheirs({ key, target }: KeyboardEvent, seek: HTMLInputElement): boolean {
+  if (target instanceof HTMLSelectElement) return true;
+  if (target instanceof HTMLButtonElement || target instanceof HTMLAnchorElement) return key === " ";
+  return target instanceof HTMLInputElement && target !== seek && key !== " ";
 }

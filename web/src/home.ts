@@ -2,15 +2,22 @@
 
 import { ACESFilmicToneMapping, Color, Fog, PerspectiveCamera, Raycaster, Vector2, WebGLRenderer } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { canDraw, element, tell } from "./dom";
+import { canDraw, element, publishNothing, tell } from "./dom";
 import { loadSquare } from "./model";
 import { clockText } from "./playback";
 import { type Monument, parseSessions, parseSite, type Site } from "./protocol";
+import { MODEL_FAILED } from "./words";
 
 const SKY = 0xbfd4e6;
 const LOOK_AGAIN_MS = 3000;
+/** From over the south-east corner, along the square; gltf axes, metres. */
+const VIEW_FROM = [78, 66, 112] as const;
+const VIEW_OF = [-25, 2, 0] as const;
+/** On a screen held upright the field of view grows upwards, so that at least this much is seen across. */
+const LEAST_WIDTH_DEG = 38;
 
 async function showWalks(): Promise<void> {
+  const note = element("walks-note", HTMLElement);
   try {
     const sessions = parseSessions(await (await fetch("/api/sessions")).json());
     const links = sessions.map((session) => {
@@ -24,9 +31,12 @@ async function showWalks(): Promise<void> {
       link.append(session.kind === "replay" ? `Replay ${session.log ?? session.name}` : `Join ${session.name}`, detail);
       return link;
     });
-    element("walks", HTMLElement).replaceChildren(...links);
+    const walks = element("walks", HTMLElement);
+    // a list that has not changed stays, and so does the focus on one of its links
+    if (links.map((link) => link.outerHTML).join("") !== walks.innerHTML) walks.replaceChildren(...links);
+    tell(note, links.length > 0 ? null : "No walk is being shown just now: it appears here when one begins.");
   } catch {
-    // the server is away for a moment; the list stays as it was
+    tell(note, "The server does not answer: trying again …");
   }
   window.setTimeout(() => void showWalks(), LOOK_AGAIN_MS);
 }
@@ -42,13 +52,14 @@ async function showSquare(site: Site): Promise<void> {
   scene.background = new Color(SKY);
   scene.fog = new Fog(SKY, 180, 620);
   const camera = new PerspectiveCamera(45, 1, 0.5, 1500);
-  camera.position.set(70, 60, 105);
+  camera.position.set(...VIEW_FROM);
   const controls = new OrbitControls(camera, canvas);
-  controls.target.set(-25, 2, 0);
+  controls.target.set(...VIEW_OF);
   controls.maxPolarAngle = 1.5;
   controls.minDistance = 8;
   controls.maxDistance = 320;
   controls.enableDamping = false;
+  controls.listenToKeyEvents(canvas);
   let asked = false;
   const draw = (): void => {
     asked = false;
@@ -63,6 +74,7 @@ async function showSquare(site: Site): Promise<void> {
     renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     renderer.setSize(canvas.clientWidth, canvas.clientHeight, false);
     camera.aspect = canvas.clientWidth / Math.max(1, canvas.clientHeight);
+    camera.fov = fieldOf(camera.aspect);
     camera.updateProjectionMatrix();
     ask();
   };
@@ -72,7 +84,13 @@ async function showSquare(site: Site): Promise<void> {
   nameOnHover(canvas, camera, model, site.monuments);
 }
 
-/** Name the monument under the pointer. */
+/** Return the vertical field of view, degrees, that shows the width of the square on a screen of this shape. */
+function fieldOf(aspect: number): number {
+  const halfWidth = Math.tan((LEAST_WIDTH_DEG * Math.PI) / 360);
+  return Math.max(45, (Math.atan(halfWidth / aspect) * 360) / Math.PI);
+}
+
+/** Name the monument under the pointer, or under a finger that taps. */
 function nameOnHover(
   canvas: HTMLCanvasElement,
   camera: PerspectiveCamera,
@@ -83,8 +101,8 @@ function nameOnHover(
   const caster = new Raycaster();
   const byId = new Map(monuments.map((monument) => [monument.id, monument]));
   let busy = false;
-  canvas.onpointermove = ({ clientX, clientY, buttons }) => {
-    if (busy || buttons !== 0) return;
+  const nameAt = ({ clientX, clientY }: MouseEvent): void => {
+    if (busy) return;
     busy = true;
     requestAnimationFrame(() => {
       busy = false;
@@ -97,7 +115,14 @@ function nameOnHover(
       label.style.top = `${clientY}px`;
     });
   };
-  canvas.onpointerleave = () => tell(label, null);
+  canvas.onpointermove = (event) => {
+    if (event.buttons === 0) nameAt(event);
+    else tell(label, null);
+  };
+  canvas.onclick = nameAt;
+  canvas.onpointerleave = ({ pointerType }) => {
+    if (pointerType === "mouse") tell(label, null);
+  };
 }
 
 async function start(): Promise<void> {
@@ -110,12 +135,9 @@ async function start(): Promise<void> {
     element("credit", HTMLElement).textContent = site.attribution;
     await showSquare(site);
   } catch (error) {
-    tell(notice, "The model of the square could not be loaded: reload the page, or run `agora build` again.");
+    tell(notice, MODEL_FAILED);
     console.warn(error);
   }
 }
 
-const ready = start();
-Object.defineProperty(globalThis, "agora", {
-  value: Object.freeze({ ready, stats: () => null, project: () => null, pose: () => null }),
-});
+publishNothing(start());

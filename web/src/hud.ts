@@ -3,7 +3,7 @@
 import { element, tell } from "./dom";
 import { headingOf } from "./frames";
 import { FrameRate, PoseAge } from "./playback";
-import type { FrameMessage } from "./wire";
+import type { CameraPose, FrameMessage } from "./wire";
 import {
   compassPoint,
   degreesText,
@@ -16,6 +16,10 @@ import {
   sentenceFor,
 } from "./words";
 
+/** Ground truth as good as this is shown as the truth. */
+const EXACT_M = 0.005;
+const EXACT_RAD = 0.001;
+
 export class Hud {
   readonly rate = new FrameRate();
   readonly age = new PoseAge();
@@ -27,15 +31,15 @@ export class Hud {
   private toastTimer: number | undefined;
 
   /** Show the figures of the picture that is drawn now. */
-  show(frame: FrameMessage | null, now_ms: number): void {
-    this.set("rate", `${this.rate.at(now_ms).toFixed(0)} per second`);
+  show(frame: FrameMessage | null, playing: boolean, now_ms: number): void {
+    this.set("rate", playing ? `${this.rate.at(now_ms).toFixed(0)} per second` : "paused");
     const age_ms = this.age.at(now_ms);
-    this.set("age", age_ms === null ? "–" : `${Math.round(age_ms)} ms`);
+    this.set("age", age_ms === null || !playing ? "–" : `${Math.round(age_ms)} ms`);
     const pose = frame?.pose ?? null;
-    this.set("position", pose ? `± ${metresText(horizontalSigma(pose.covariance))}` : "–");
-    this.set("heading", pose ? headingText(pose.T_site_cam, pose.covariance, pose.headingKnown) : "–");
+    this.set("position", pose ? positionText(pose) : "–");
+    this.set("heading", pose ? headingText(pose) : "–");
     const model = pose?.motionModel ?? null;
-    this.set("motion", model ? `${model} · ${motionWords(model)}` : "none");
+    this.set("motion", model ? `${model}: ${motionWords(model)}` : "none");
     this.cells["motion"]?.style.setProperty("--motion", motionColour(model));
     this.set("estimator-now", pose ? pose.estimator : "–");
   }
@@ -58,7 +62,14 @@ export class Hud {
   }
 }
 
-function headingText(T_site_cam: readonly number[], covariance: readonly number[], known: boolean): string {
-  if (!known) return "unknown";
-  return `${compassPoint(headingOf(T_site_cam))} ± ${degreesText(headingSigma(covariance))}`;
+function positionText({ covariance, isTruth }: CameraPose): string {
+  const sigma_m = horizontalSigma(covariance);
+  return isTruth && sigma_m < EXACT_M ? "true" : `± ${metresText(sigma_m)}`;
+}
+
+function headingText({ T_site_cam, covariance, headingKnown, isTruth }: CameraPose): string {
+  if (!headingKnown) return "unknown";
+  const point = compassPoint(headingOf(T_site_cam));
+  const sigma_rad = headingSigma(covariance);
+  return isTruth && sigma_rad < EXACT_RAD ? `${point}, true` : `${point} ± ${degreesText(sigma_rad)}`;
 }

@@ -14,9 +14,11 @@ export interface Situation {
   readonly sinceOpened_ms: number;
   readonly hasPose: boolean;
   readonly headingKnown: boolean;
+  /** The session that the address asks for by name; null where any will do. */
+  readonly asked: string | null;
   /** The server's own notice, if any. */
   readonly notice: string | null;
-  readonly modelFailed: boolean;
+  readonly model: "loading" | "shown" | "failed";
 }
 
 const QUIET_AFTER_MS = 2500;
@@ -25,17 +27,26 @@ const QUIET_AFTER_MS = 2500;
 export function sentenceFor(s: Situation): string | null {
   if (s.connection === "refused")
     return "This page may not see the pictures: open it with the link that the rig's owner gives you.";
-  if (s.connection === "no session")
-    return "Nobody is walking just now. This page starts by itself when a walk begins.";
-  if (s.connection === "lost") return "The connection is lost. Trying again …";
+  if (s.connection === "no session") return noSession(s.asked);
+  if (s.connection === "lost") return "The connection is lost: trying again …";
   if (s.connection === "connecting") return s.sinceOpened_ms > QUIET_AFTER_MS ? "Connecting to the walk …" : null;
   if (s.sincePicture_ms === null && s.sinceOpened_ms > QUIET_AFTER_MS) return noPictures(s);
   if (s.sincePicture_ms !== null && s.sincePicture_ms > QUIET_AFTER_MS && s.playing) return noPictures(s);
-  if (s.modelFailed) return "The model of the square could not be loaded: reload the page, or run `agora build` again.";
+  if (s.model === "failed") return MODEL_FAILED;
   if (s.sincePicture_ms !== null && !s.hasPose)
     return "Finding out where you are: the square appears when the position is known.";
   if (s.hasPose && !s.headingKnown) return "Walk a few steps so that I can find north.";
+  if (s.model === "loading" && s.sinceOpened_ms > QUIET_AFTER_MS) return "The square is on its way …";
   return s.notice;
+}
+
+/** Said on both pages. */
+export const MODEL_FAILED =
+  "The model of the square could not be loaded: reload the page, or build it anew with agora build.";
+
+function noSession(asked: string | null): string {
+  if (asked === null) return "Nobody is walking just now: this page starts by itself when a walk begins.";
+  return `There is no walk named ${asked} here: the start page lists those that there are.`;
 }
 
 function noPictures(s: Situation): string {

@@ -1,0 +1,199 @@
+"""What surrounds the ruins today: mountains, paths, stacked blocks, stones, grass, shrubs and trees."""
+
+from collections.abc import Callable
+from typing import TypeAlias
+
+import numpy as np
+import shapely
+from shapely.geometry import LinearRing, Polygon
+
+from assets import plants, rubble
+from assets.axes import Array, agora_from_site
+from assets.shape import Shape
+from assets.site import Site
+from assets.terrain import Terrain
+from assets.textures import noise
+
+CLEAR_M = 4.0
+"""Nothing stands nearer to a way that visitors take."""
+FAR_RADII_M = np.array([250.0, 420.0, 600.0, 850.0, 1150.0, 1500.0, 2000.0, 2700.0])
+SQUARE_UV = (-104.0, 49.0, -55.0, 2.0)
+"""u from and to, v from and to."""
+
+
+def walked(site: Site) -> shapely.Geometry:
+    """Return where visitors walk: along the ways, and anywhere inside the convex ones."""
+    ways = [LinearRing(way) for way in site.ways]
+    open_places = [Polygon(way) for way in ways if abs(Polygon(way).area - way.convex_hull.area) < 1.0]
+    return shapely.union_all([*ways, *open_places])
+
+
+class Planting:
+    """Finds places on the ground for things, clear of ways and of what stands."""
+
+    def __init__(self, site: Site, terrain: Terrain, rng: np.random.Generator) -> None:
+        self.terrain, self.rng = terrain, rng
+        self._axes = agora_from_site(site.azimuth_rad)
+        self._walked = walked(site)
+        standing = [Polygon(m.footprint.corners_en_m) for m in site.shown_in("today") if m.kind != "paving"]
+        self._standing = shapely.union_all(standing)
+        shapely.prepare(self._walked)
+        shapely.prepare(self._standing)
+
+    def places(self, count: int, box_uv: tuple[float, float, float, float], clear_m: float, off_m: float) -> Array:
+        """Return at most `count` points (n, 3) on the ground of a box, `clear_m` off the ways, `off_m` off monuments."""
+        u0, u1, v0, v1 = box_uv
+        uv = np.stack([self.rng.uniform(u0, u1, count), self.rng.uniform(v0, v1, count)], -1)
+        en = uv @ self._axes
+        points = shapely.points(en)
+        free = shapely.distance(points, self._walked) > clear_m if clear_m > 0.0 else np.ones(count, dtype=bool)
+        free &= shapely.distance(points, self._standing) > off_m
+        return np.column_stack([en, self.terrain.ground_z_m(en[:, 0], en[:, 1])])[free]
+
+
+def mountains(terrain: Terrain) -> Shape:
+    """Return the hills beyond the terrain: Panayirdag in the north, Bulbuldag in the south, lower ground east and west."""
+    azimuth = np.linspace(0.0, 2.0 * np.pi, 121)
+    east, north = (FAR_RADII_M[:, None] * f(azimuth) for f in (np.sin, np.cos))
+    rough = noise(301, 128, 2, 30, 1.1)
+    bumps = rough[(np.arange(8) * 13 % 128)[:, None], np.arange(121)[None] % 120]
+    lobes = (
+        (12.0, 0.62, 95.0, 650.0),
+        (200.0, 0.75, 260.0, 1100.0),
+        (95.0, 0.7, 70.0, 1500.0),
+        (320.0, 0.5, 25.0, 2000.0),
+    )
+    rise = np.zeros_like(east)
+    for centre_deg, spread, height, reach in lobes:
+        off = np.angle(np.exp(1j * (azimuth - np.radians(centre_deg))))
+        near = np.clip((FAR_RADII_M - 330.0) / (reach - 330.0), 0.0, 1.6)
+        rise += height * np.exp(-((off / spread) ** 2)) * (np.sin(np.minimum(near, 1.0) * np.pi / 2.0) ** 1.5)[:, None]
+    outward = np.clip((FAR_RADII_M - 380.0) / 900.0, 0.0, 1.0)[:, None]
+    edge = terrain.ground_z_m(east, north)
+    z = edge * (1.0 - 0.75 * outward) + rise + bumps * 26.0 * outward - 3.0 - 25.0 * outward
+    z[0] -= 25.0
+    shape = Shape()
+    shape.surface("scrub", np.stack([east, north, z], -1)[::-1], 0.92, from_above=True)
+    return shape
+
+
+def grasses(planting: Planting) -> Shape:
+    """Return tufts of dry grass all over, thickest in patches, and small stones."""
+    shape, rng = Shape(), planting.rng
+    u0, u1, v0, v1 = SQUARE_UV
+    inside = planting.places(26000, (u0, u1 + 6.0, v0 - 14.0, v1 + 18.0), 0.0, -1.0)
+    around = planting.places(5000, (u0 - 25.0, u1 + 30.0, v0 - 45.0, v1 + 70.0), 0.0, 0.3)
+    everywhere = np.concatenate([inside, around])
+    patches = noise(311, 256, 3, 60, 0.8)
+    i, j = (np.floor(everywhere[:, k] * 2.0).astype(int) % 256 for k in (0, 1))
+    everywhere = everywhere[patches[i, j] + rng.normal(0.0, 0.5, len(everywhere)) > -0.1]
+    plants.tufts(shape, rng, everywhere, rng.uniform(0.08, 0.34, len(everywhere)))
+    stones = planting.places(3600, (u0, u1 + 6.0, v0 - 14.0, v1), 0.0, 0.2)
+    sizes = np.exp(rng.normal(np.log(0.07), 0.55, (len(stones), 1))) * rng.uniform(
+        (0.9, 0.7, 0.35), (1.7, 1.2, 0.7), (len(stones), 3)
+    )
+    rubble.blocks(shape, rng, stones, sizes, rng.uniform(0.0, 6.0, len(stones)), 0.16)
+    return shape
+
+
+def stacked(planting: Planting) -> Shape:
+    """Return the architecture found here, laid up in rows and stacks at the edges of the square, and lying about."""
+    shape, rng = Shape(), planting.rng
+    u0, u1, v0, v1 = SQUARE_UV
+    strips = (
+        (u0, u1, v0 + 1.0, v0 + 9.0, 60),
+        (u0, u1, v1 - 5.0, v1 - 1.0, 40),
+        (u1 - 9.0, u1, v0, v1, 24),
+        (u0, u0 + 8.0, v0, v1, 24),
+    )
+    for a, b, c, d, count in strips:
+        for x, y, z in planting.places(count, (a, b, c, d), CLEAR_M, 1.6):
+            rubble.stack(
+                shape, rng, x, y, z, -0.26 + float(rng.choice([0.0, np.pi / 2.0])) + float(rng.normal(0.0, 0.08))
+            )
+    rubble.scatter(shape, rng, planting.places(420, SQUARE_UV, CLEAR_M - 0.4, 0.8), 1.0)
+    for place in planting.places(60, SQUARE_UV, CLEAR_M, 1.2):
+        part = rubble.lying_drum(float(rng.uniform(0.45, 0.8)), float(rng.uniform(0.8, 2.2)))
+        shape.copies(part, place[None], rng.uniform(0.0, np.pi, 1))
+    for place in planting.places(30, SQUARE_UV, CLEAR_M, 1.2):
+        shape.copies(rubble.drum(float(rng.uniform(0.5, 0.8)), float(rng.uniform(0.4, 1.5))), place[None])
+    return shape
+
+
+Box: TypeAlias = tuple[float, float, float, float]
+_PLANTS: tuple[tuple[Callable[[np.random.Generator], Shape], float, tuple[tuple[int, Box], ...]], ...] = (
+    (plants.bush, 0.6, ((280, (-106.0, 60.0, -90.0, 4.0)), (60, (-108.0, 56.0, 3.0, 24.0)))),
+    (
+        plants.slope_bush,
+        0.6,
+        (
+            (420, (-150.0, 110.0, 22.0, 130.0)),
+            (420, (-170.0, 130.0, -150.0, -74.0)),
+            (260, (-260.0, -120.0, -110.0, 110.0)),
+            (220, (58.0, 200.0, -90.0, 90.0)),
+        ),
+    ),
+    (
+        plants.tree,
+        2.5,
+        (
+            (26, (-120.0, 120.0, 55.0, 130.0)),
+            (26, (-160.0, 120.0, -150.0, -78.0)),
+            (16, (58.0, 150.0, -60.0, 60.0)),
+            (12, (-270.0, -125.0, -110.0, 110.0)),
+        ),
+    ),
+    (
+        plants.cypress,
+        2.0,
+        (
+            (12, (-110.0, 90.0, 60.0, 115.0)),
+            (10, (-130.0, 110.0, -125.0, -80.0)),
+            (8, (62.0, 130.0, 22.0, 60.0)),
+        ),
+    ),
+)
+"""What grows: its maker, how far it keeps from monuments, and how many in which boxes of (u, v)."""
+
+
+def planted(planting: Planting) -> Shape:
+    """Return shrubs and trees, none of them on a way; those on the slopes are the same few, turned and scaled."""
+    shape, rng = Shape(), planting.rng
+    for make, off_m, boxes in _PLANTS:
+        variants = [make(rng) for _ in range(5)]
+        for count, box in boxes:
+            places = planting.places(count, box, CLEAR_M + 0.6, off_m)
+            chosen = rng.integers(0, len(variants), len(places))
+            for i, variant in enumerate(variants):
+                mine = places[chosen == i]
+                scale = np.exp(rng.normal(0.0, 0.28, len(mine)))
+                shape.copies(variant, mine, rng.uniform(0.0, 6.28, len(mine)), scale)
+    far = [plants.far_bush(rng) for _ in range(5)]
+    for i, place_box in enumerate(((-380.0, 300.0, 90.0, 330.0), (-380.0, 300.0, -320.0, -120.0))):
+        places = planting.places(1300, place_box, 0.0, 1.0)
+        for k, variant in enumerate(far):
+            mine = places[k::5]
+            shape.copies(variant, mine, rng.uniform(0.0, 6.28, len(mine)), rng.uniform(1.2, 3.4 + i, len(mine)))
+    return shape
+
+
+def path(terrain: Terrain, rng: np.random.Generator, way_en_m: Array, width_m: float) -> Shape:
+    """Return a trodden path along a polyline (n, 2), ragged at its edges, laid on the ground."""
+    legs = np.diff(way_en_m, axis=0)
+    reached = np.concatenate([[0.0], np.cumsum(np.hypot(legs[:, 0], legs[:, 1]))])
+    along = np.arange(0.0, reached[-1], 1.2)
+    middle = np.stack([np.interp(along, reached, way_en_m[:, k]) for k in (0, 1)], -1)
+    smooth = np.ones(7) / 7.0
+    middle = np.stack([np.convolve(np.pad(middle[:, k], 3, mode="edge"), smooth, mode="valid") for k in (0, 1)], -1)
+    heading = np.gradient(middle, axis=0)
+    side = np.stack([-heading[:, 1], heading[:, 0]], -1) / np.linalg.norm(heading, axis=1, keepdims=True)
+    rows = []
+    for edge in (0.5, 0.2, -0.2, -0.5):
+        ragged = edge * width_m * (1.0 + (0.3 * rng.normal(size=(len(middle), 1)) if abs(edge) > 0.4 else 0.0))
+        en = middle + side * ragged
+        rows.append(
+            np.column_stack([en, terrain.ground_z_m(en[:, 0], en[:, 1]) + (0.035 if abs(edge) < 0.4 else 0.012)])
+        )
+    shape = Shape()
+    shape.surface("earth", np.stack(rows), from_above=True)
+    return shape

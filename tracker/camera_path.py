@@ -1,0 +1,58 @@
+"""The camera's own path: keyframes and pictures chained by `Tr` (eq. 1), each translation as long as something else says."""
+
+from collections import deque
+from dataclasses import dataclass
+
+from tracker.inertial import InertialPath
+from tracker.measurements import Matrix, Vector3, VisualMotion
+from tracker.transformation import transformation
+
+#: Five seconds of a 12 Hz camera: no fix comes later than that.
+_KEPT = 64
+#: A picture further than this from a fix does not say where the camera was then.
+_NEAR_NS = 500_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Sight:
+    """A picture: where it was by the chain of keyframes (only differences mean something), and how it looked."""
+
+    t_ns: int
+    p_m: Vector3
+    R_site_cam: Matrix
+
+
+class CameraPath:
+    """The recent pictures, in site axes."""
+
+    def __init__(self) -> None:
+        self._sights: deque[Sight] = deque(maxlen=_KEPT)
+
+    @property
+    def newest(self) -> Sight | None:
+        """The last picture."""
+        return self._sights[-1] if self._sights else None
+
+    def near(self, t_ns: int) -> Sight | None:
+        """Return the picture nearest to a time; None where none is near."""
+        sight = min(self._sights, key=lambda sight: abs(sight.t_ns - t_ns), default=None)
+        return sight if sight is not None and abs(sight.t_ns - t_ns) <= _NEAR_NS else None
+
+    def held(self, t_ns: int) -> Sight | None:
+        """Return the picture of exactly this time."""
+        return next((sight for sight in reversed(self._sights) if sight.t_ns == t_ns), None)
+
+    def begin(self, t_ns: int, R_site_cam: Matrix, path: InertialPath) -> Sight:
+        """Return a picture that nothing is chained to: at the end of the camera's path, carried on by the IMU."""
+        last = self.newest
+        if last is None:
+            return Sight(t_ns, (0.0, 0.0, 0.0), R_site_cam)
+        (px, py, pz), (dx, dy, dz) = last.p_m, path.displacement_m(last.t_ns, t_ns)
+        return Sight(t_ns, (px + dx, py + dy, pz + dz), R_site_cam)
+
+    def chain(self, motion: VisualMotion, key: Sight, length_m: float, R_site_cam: Matrix) -> None:
+        """Add a picture that stands off its keyframe by Tr, its translation of unit length made `length_m` long."""
+        dx, dy, dz = motion.direction_key
+        Tr = transformation(motion.R_key_cam, (dx * length_m, dy * length_m, dz * length_m))
+        x, y, z = (float(p + v) for p, v in zip(key.p_m, key.R_site_cam @ Tr[:3, 3], strict=True))
+        self._sights.append(Sight(motion.t_ns, (x, y, z), R_site_cam))
