@@ -7,12 +7,14 @@ from numpy.typing import NDArray
 
 from assets.axes import Array, agora_from_site
 from assets.materials import MATERIALS
-from assets.shape import Mesh, cells, unit
+from assets.shape import Mesh, Place, Shape, cells, unit
 from assets.site import Monument
 from assets.terrain import Terrain
 
 LIFT_M = 0.04
 """How far paving lies over the terrain, so that the two never fight for a pixel."""
+STEEPEST = 0.8
+"""Triangles whose normal's z is less are banks: flat, of bare earth."""
 
 
 def terrain_meshes(
@@ -33,10 +35,24 @@ def terrain_meshes(
     half = len(triangles) // 2
     both = material_of((centres[:half] + centres[half:]) / 2.0)
     material = np.concatenate([both, both])
-    normals = unit(np.cross(np.gradient(points, axis=0), np.gradient(points, axis=1))).reshape(-1, 3)
+    sides = corners[triangles]
+    across = np.cross(sides[:, 1] - sides[:, 0], sides[:, 2] - sides[:, 0])
+    gentle = unit(across)[:, 2] > STEEPEST
+    normals = _gentle_normals(len(corners), triangles[gentle], across[gentle])
     tints = tint_of(corners)
-    names = [str(name) for name in dict.fromkeys(material.tolist())]
-    return [_part(name, corners, normals, tints, triangles[material == name]) for name in names]
+    names = [str(name) for name in dict.fromkeys(material[gentle].tolist())]
+    meshes = [_part(name, corners, normals, tints, triangles[gentle & (material == name)]) for name in names]
+    banks = Shape()
+    banks.polygons("earth", sides[~gentle], 0.9)
+    return [*meshes, *banks.meshes(Place.at(0.0, 0.0, 0.0))]
+
+
+def _gentle_normals(count: int, triangles: NDArray[np.int64], across: Array) -> Array:
+    """Normals of the corners, from gentle triangles only: a level place stays level to the edge of a bank."""
+    total = np.zeros((count, 3))
+    for corner in range(3):
+        np.add.at(total, triangles[:, corner], across)
+    return unit(total)
 
 
 def _part(name: str, points: Array, normals: Array, tints: Array, triangles: NDArray[np.int64]) -> Mesh:

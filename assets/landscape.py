@@ -181,7 +181,7 @@ def path(terrain: Terrain, rng: np.random.Generator, way_en_m: Array, width_m: f
     """Return a trodden path along a polyline (n, 2), ragged at its edges, laid on the ground."""
     legs = np.diff(way_en_m, axis=0)
     reached = np.concatenate([[0.0], np.cumsum(np.hypot(legs[:, 0], legs[:, 1]))])
-    along = np.arange(0.0, reached[-1], 1.2)
+    along = np.arange(0.0, reached[-1], 0.9)
     middle = np.stack([np.interp(along, reached, way_en_m[:, k]) for k in (0, 1)], -1)
     smooth = np.ones(7) / 7.0
     middle = np.stack([np.convolve(np.pad(middle[:, k], 3, mode="edge"), smooth, mode="valid") for k in (0, 1)], -1)
@@ -189,10 +189,10 @@ def path(terrain: Terrain, rng: np.random.Generator, way_en_m: Array, width_m: f
     side = np.stack([-heading[:, 1], heading[:, 0]], -1) / np.linalg.norm(heading, axis=1, keepdims=True)
     rows = []
     for edge in (0.5, 0.2, -0.2, -0.5):
-        ragged = edge * width_m * (1.0 + (0.3 * rng.normal(size=(len(middle), 1)) if abs(edge) > 0.4 else 0.0))
-        en = middle + side * ragged
+        wander = np.convolve(rng.normal(0.0, 0.28, len(middle) + 4), np.ones(5) / 2.2, mode="valid")
+        en = middle + side * edge * width_m * (1.0 + wander[:, None] * (abs(edge) > 0.4))
         rows.append(
-            np.column_stack([en, terrain.ground_z_m(en[:, 0], en[:, 1]) + (0.035 if abs(edge) < 0.4 else 0.012)])
+            np.column_stack([en, terrain.ground_z_m(en[:, 0], en[:, 1]) + (0.03 if abs(edge) < 0.4 else 0.008)])
         )
     shape = Shape()
     shape.surface("earth", np.stack(rows), from_above=True)

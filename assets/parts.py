@@ -13,7 +13,7 @@ STEPS_OUT_M = 1.0
 """How far the steps of a temple may stand out from its stylobate."""
 
 
-def column(diameter_m: float, height_m: float, plain: bool = False) -> Shape:
+def column(diameter_m: float, height_m: float, plain: bool = False, sides: int = COLUMN_SIDES) -> Shape:
     """Return one column at (0, 0, 0): plinth, torus, tapering shaft, capital; `plain` is Doric, without plinth."""
     radius = diameter_m / 2.0
     base = 0.0 if plain else 0.35 * diameter_m
@@ -27,7 +27,7 @@ def column(diameter_m: float, height_m: float, plain: bool = False) -> Shape:
     if not plain:
         profile = [(1.3, 0.5 * base), (1.3, 0.8 * base), *profile]
     shape = Shape()
-    revolved(shape, "marble", np.array(profile) * (radius, 1.0), COLUMN_SIDES)
+    revolved(shape, "marble", np.array(profile) * (radius, 1.0), sides)
     half = radius * 1.36
     shape.box("marble", (-half, -half, height_m - 0.4 * capital), (half, half, height_m))
     if not plain:

@@ -38,8 +38,8 @@ def bush(rng: np.random.Generator) -> Shape:
     for _ in range(3):
         middle = np.array([*rng.normal(0.0, 0.28, 2), rng.uniform(0.25, 0.45)])
         radii = np.array([0.5, 0.5, 0.42]) * rng.uniform(0.7, 1.1)
-        crown(shape, rng, middle, radii, 34, 0.1, tint)
-        core(shape, middle, 0.72 * radii, tint)
+        crown(shape, rng, middle, radii, 80, 0.085, tint)
+        core(shape, middle, 0.6 * radii, tint)
     return shape
 
 
@@ -98,11 +98,11 @@ def cypress(rng: np.random.Generator) -> Shape:
 
 def tufts(shape: Shape, rng: np.random.Generator, places_m: Array, height_m: Array) -> None:
     """Add tufts of dry grass at (k, 3) places with blades up to (k,) high."""
-    blades = 5
+    blades = 7
     k = len(places_m)
-    lean = rng.normal(0.0, 0.32, (k, blades, 2))
+    lean = rng.normal(0.0, 0.42, (k, blades, 2))
     turn = rng.uniform(0.0, np.pi, (k, blades))
-    half = np.stack([np.cos(turn), np.sin(turn), np.zeros_like(turn)], -1) * rng.uniform(0.008, 0.024, (k, blades, 1))
+    half = np.stack([np.cos(turn), np.sin(turn), np.zeros_like(turn)], -1) * rng.uniform(0.007, 0.02, (k, blades, 1))
     root = places_m[:, None] + np.concatenate(
         [rng.normal(0.0, 0.07, (k, blades, 2)), np.full((k, blades, 1), -0.02)], -1
     )

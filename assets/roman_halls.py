@@ -29,7 +29,7 @@ def stoa(monument: Monument, shape: Shape) -> None:
     parts.beam(part, 0.0, w, front - 0.32, front + 0.32, column_h, eave - column_h)
     if d > 8.0:
         inner = parts.row((3.0, d / 2.0), (w - 3.0, d / 2.0), len(places) // 2)
-        part.copies(parts.column(0.9 * diameter, column_h + 0.9), inner)
+        part.copies(parts.column(0.9 * diameter, column_h + 0.9, sides=8), inner)
     part.box("plaster", (0.0, d - 0.7, 0.0), (w, d, eave))
     for x in (0.0, w - 0.6):
         part.box("plaster", (x, 0.9, 0.0), (x + 0.6, d - 0.7, eave))
@@ -51,7 +51,7 @@ def basilica(monument: Monument, shape: Shape) -> None:
     parts.beam(shape, 0.0, length, front - 0.38, front + 0.38, column_h, eave - column_h)
     for y in (south, north):
         inner = parts.row((2.4, y), (length - 2.4, y), count // 2)
-        shape.copies(parts.column(0.75, 6.6), inner)
+        shape.copies(parts.column(0.75, 6.6, sides=8), inner)
         parts.beam(shape, 0.0, length, y - 0.35, y + 0.35, 6.6, 0.9)
     nave_eave = monument.measure("nave_eave_m")
     parts.walls(shape, "plaster", 0.0, length, south - 0.35, north + 0.35, 7.5, nave_eave)

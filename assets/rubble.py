@@ -122,3 +122,38 @@ def lying_drum(diameter_m: float, length_m: float) -> Shape:
     shape.polygons("stone", halves[1][:-1])
     shape.polygons("stone", halves[0][:0:-1])
     return shape
+
+
+def inside(rng: np.random.Generator, count: int, length_m: float, width_m: float, z_m: float) -> Array:
+    """Return places (count, 3) all over a rectangle from the origin, at one level."""
+    return np.stack(
+        [rng.uniform(0.4, length_m - 0.4, count), rng.uniform(0.4, width_m - 0.4, count), np.full(count, z_m)], -1
+    )
+
+
+def stumps(shape: Shape, rng: np.random.Generator, places_m: Array, diameter_m: float, highest_m: float) -> None:
+    """Add what is left of columns: a few drums, at most places nothing."""
+    for place in places_m[rng.random(len(places_m)) < 0.45]:
+        height = float(rng.uniform(0.25, 1.0) ** 2 * highest_m + 0.2)
+        shape.copies(drum(diameter_m, height), place[None], rng.uniform(0.0, 6.0, 1))
+
+
+def drums(shape: Shape, rng: np.random.Generator, places_m: Array, diameter_m: float) -> None:
+    """Add lying drums at (k, 3) places."""
+    for place in places_m:
+        part = lying_drum(diameter_m * float(rng.uniform(0.85, 1.0)), float(rng.uniform(0.7, 1.9)))
+        shape.copies(part, place[None], rng.uniform(0.0, np.pi, 1))
+
+
+def row_of_blocks(
+    shape: Shape, rng: np.random.Generator, start: Array, end: Array, size: tuple[float, float], z: float
+) -> None:
+    """Add a stylobate: blocks end to end, some of them missing."""
+    length = float(np.hypot(*(end - start)))
+    count = max(2, round(length / 1.15))
+    share = (np.arange(count) + 0.5)[:, None] / count
+    middles = np.column_stack([start + (end - start) * share, np.full(count, z) + rng.normal(0.0, 0.02, count)])
+    kept = rng.random(count) > 0.14
+    sizes = np.tile([length / count * 0.98, *size], (count, 1))
+    yaw = np.full(count, np.arctan2(*(end - start)[::-1])) + rng.normal(0.0, 0.012, count)
+    blocks(shape, rng, middles[kept], sizes[kept], yaw[kept])

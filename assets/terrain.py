@@ -11,11 +11,14 @@ from numpy.typing import NDArray
 from assets.axes import Array, agora_from_site
 from assets.errors import SiteError
 from assets.site import Site
+from assets.textures import noise
 
 BLEND_POWER = 3.0
 """Inverse distance weights: 3 keeps slopes even; 2 pulls the whole ground to one mean."""
 MIN_GAP_M = 0.4
 """Regular grid lines nearer than this to an edge are left out: slivers shade badly."""
+RELIEF_CELLS, RELIEF_CELL_M, RELIEF_GROWS_M = 64, 20.0, 180.0
+"""Of the hills' unevenness: noise on so many cells a side, of that size, at full height from that far out."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +78,18 @@ def build_terrain(site: Site) -> Terrain:
     u_m = _lines(levels[:, 0:2], u_extent, _numbers(site.terrain, "fine_u_m", (2,)), float(fine), float(coarse))
     v_m = _lines(levels[:, 2:4], v_extent, _numbers(site.terrain, "fine_v_m", (2,)), float(fine), float(coarse))
     u, v = np.meshgrid(u_m, v_m, indexing="ij")
-    return Terrain(site.azimuth_rad, u_m, v_m, _blend(levels, u, v))
+    relief = float(_numbers(site.terrain, "relief_m", ()))
+    known = _numbers(site.terrain, "relief_beyond_m", (4,))
+    return Terrain(site.azimuth_rad, u_m, v_m, _blend(levels, u, v) + relief * _relief(known, u, v))
+
+
+def _relief(known: Array, u: Array, v: Array) -> Array:
+    """Hummocks and gullies at (u, v): deviation 1 far out, none inside the rectangle whose levels are known."""
+    u0, u1, v0, v1 = known
+    away = np.hypot(np.maximum(np.maximum(u0 - u, u - u1), 0.0), np.maximum(np.maximum(v0 - v, v - v1), 0.0))
+    field = noise(401, RELIEF_CELLS, 2, RELIEF_CELLS // 4, 1.3)
+    i, j = (np.floor(x / RELIEF_CELL_M).astype(int) % RELIEF_CELLS for x in (u, v))
+    return np.asarray(field[i, j] * np.clip(away / RELIEF_GROWS_M, 0.0, 1.0))
 
 
 def _numbers(table: Mapping[str, Any], key: str, shape: tuple[int | None, ...]) -> Array:

@@ -99,11 +99,11 @@ def grass() -> Texture:
     size = 1024
     patches, tussock = noise(61, size, 4, 30, 0.8), noise(62, size, 16, 140, 0.6)
     blades = noise(63, size, 60, 480, 0.15)
-    rgb = _mix((158, 144, 112), (204, 192, 158), 0.5 + 0.22 * patches + 0.14 * tussock)
+    rgb = _mix((150, 134, 106), (214, 200, 168), 0.5 + 0.24 * patches + 0.24 * tussock)
     green = np.clip(0.06 + 0.22 * tussock + 0.12 * patches, 0.0, 0.6)[..., None]
-    rgb = rgb * (1.0 - green) + np.array((112, 112, 72)) * green
+    rgb = rgb * (1.0 - green) + np.array((112, 106, 74)) * green
     pebbles = np.clip((noise(64, size, 40, 160, 0.3) - 2.3) * 2.0, 0.0, 1.0)[..., None]
-    return _painted((rgb + 17.0 * blades[..., None]) * (1.0 - pebbles) + np.array((218, 212, 198)) * pebbles)
+    return _painted((rgb + 22.0 * blades[..., None]) * (1.0 - pebbles) + np.array((218, 212, 198)) * pebbles)
 
 
 def earth() -> Texture:
@@ -138,7 +138,7 @@ def leaves() -> Texture:
 
 def straw() -> Texture:
     """Blades of dry grass."""
-    return _painted(_mix((176, 156, 104), (226, 208, 156), 0.5 + 0.3 * noise(105, 128, 2, 50, 0.4)))
+    return _painted(_mix((170, 152, 112), (222, 206, 166), 0.5 + 0.3 * noise(105, 128, 2, 50, 0.4)))
 
 
 def wood() -> Texture:

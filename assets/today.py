@@ -1,12 +1,12 @@
 """The site as it stands today: what the simulated camera sees."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from zlib import crc32
 
 import numpy as np
 from numpy.typing import NDArray
 
-from assets import landscape
+from assets import landscape, ruins_civic, ruins_works
 from assets.axes import Array
 from assets.errors import SiteError
 from assets.gltf import Node, Scene
@@ -14,12 +14,35 @@ from assets.ground import paving_mesh, terrain_meshes
 from assets.materials import MATERIALS
 from assets.monuments import monument_facts
 from assets.roman import PAVING
-from assets.ruins import RUINS
 from assets.shape import Place, Shape
 from assets.site import Monument, Site
 from assets.terrain import Terrain, build_terrain
 from assets.textures import noise
 
+Ruin = Callable[[Monument, Shape, np.random.Generator], None]
+RUINS: Mapping[str, Ruin] = {
+    "altar": ruins_civic.walls,
+    "arch": ruins_works.vaulted,
+    "basilica": ruins_civic.basilica,
+    "basin": ruins_works.basin,
+    "baths": ruins_works.baths,
+    "bouleuterion": ruins_civic.bouleuterion,
+    "chambers": ruins_works.chambers,
+    "court": ruins_civic.court,
+    "gate": ruins_civic.walls,
+    "hall": ruins_civic.walls,
+    "nymphaeum": ruins_works.high_walls,
+    "piers": ruins_works.piers,
+    "platform_hall": ruins_works.platform_hall,
+    "prytaneion": ruins_civic.prytaneion,
+    "socle": ruins_works.socle,
+    "steps": ruins_civic.stairs,
+    "stoa": ruins_civic.stoa,
+    "temple": ruins_civic.temple,
+    "terrace": ruins_works.terrace,
+    "tower": ruins_works.tower,
+    "wall": ruins_works.wall,
+}
 SITE = Place.at(0.0, 0.0, 0.0)
 PATH_WIDTH_M = 1.8
 

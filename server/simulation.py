@@ -89,7 +89,9 @@ def _pictures(walk: Walk, model: Path, kept: Path, progress: Progress) -> Iterat
             bgr = cv2.imread(str(file)) if file.is_file() else None
             if bgr is None:
                 bgr = renderer.render(walk.T_site_cam(t_ns), *lens)
-                cv2.imwrite(str(file), bgr)
+                part = file.with_suffix(".part.png")
+                cv2.imwrite(str(part), bgr)
+                part.replace(file)
             yield Frame(t_ns, t_recv_ns, frame_id, ArrayPicture(_noisy(np.asarray(bgr, np.uint8), walk, frame_id)))
             progress((frame_id + 1) / len(times))
 

@@ -10,6 +10,10 @@ from tracker.measurements import Vector3, Wxyz
 
 #: rad/s: gyro error that the gradient step can undo; the report's value for its 6-axis experiment.
 MADGWICK_BETA = 0.033
+#: The first sample gives the tilt to a few degrees, and the gain above would need seconds to mend it: it begins larger and
+#: comes down to its value in this time (as x-io's own implementation of the filter does).
+START_BETA = 0.1
+START_S = 1.0
 
 
 class Madgwick:
@@ -21,6 +25,7 @@ class Madgwick:
 
     def __init__(self, beta: float = MADGWICK_BETA) -> None:
         self._beta = beta
+        self._age_s = 0.0
         self.wxyz_level_body: Wxyz | None = None
         """None until the first specific force has given the tilt; yaw starts at 0."""
 
@@ -39,6 +44,7 @@ class Madgwick:
         else:
             gx, gy, gz = gyro_rad_s
             q = multiply(q, exp((gx * dt_s, gy * dt_s, gz * dt_s)))
+            self._age_s += dt_s
             q = self._descend(q, accel_m_s2, dt_s)
         self.wxyz_level_body = q
         return q
@@ -60,5 +66,8 @@ class Madgwick:
         length = sqrt(dw * dw + dx * dx + dy * dy + dz * dz)
         if length < 1e-9:
             return q
-        step = self._beta * dt_s / length
+        beta = self._beta
+        if self._age_s < START_S:
+            beta += (START_BETA - beta) * (1.0 - self._age_s / START_S)
+        step = beta * dt_s / length
         return normalise((w - step * dw, x - step * dx, y - step * dy, z - step * dz))

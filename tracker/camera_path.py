@@ -3,7 +3,6 @@
 from collections import deque
 from dataclasses import dataclass
 
-from tracker.inertial import InertialPath
 from tracker.measurements import Matrix, Vector3, VisualMotion
 from tracker.transformation import transformation
 
@@ -20,6 +19,8 @@ class Sight:
     t_ns: int
     p_m: Vector3
     R_site_cam: Matrix
+    path_m: Vector3
+    """The inertial path's place then: what carries on where no picture follows."""
 
 
 class CameraPath:
@@ -42,17 +43,17 @@ class CameraPath:
         """Return the picture of exactly this time."""
         return next((sight for sight in reversed(self._sights) if sight.t_ns == t_ns), None)
 
-    def begin(self, t_ns: int, R_site_cam: Matrix, path: InertialPath) -> Sight:
+    def begin(self, t_ns: int, R_site_cam: Matrix, path_m: Vector3) -> Sight:
         """Return a picture that nothing is chained to: at the end of the camera's path, carried on by the IMU."""
         last = self.newest
         if last is None:
-            return Sight(t_ns, (0.0, 0.0, 0.0), R_site_cam)
-        (px, py, pz), (dx, dy, dz) = last.p_m, path.displacement_m(last.t_ns, t_ns)
-        return Sight(t_ns, (px + dx, py + dy, pz + dz), R_site_cam)
+            return Sight(t_ns, (0.0, 0.0, 0.0), R_site_cam, path_m)
+        x, y, z = (p + new - old for p, new, old in zip(last.p_m, path_m, last.path_m, strict=True))
+        return Sight(t_ns, (x, y, z), R_site_cam, path_m)
 
-    def chain(self, motion: VisualMotion, key: Sight, length_m: float, R_site_cam: Matrix) -> None:
+    def chain(self, motion: VisualMotion, key: Sight, length_m: float, R_site_cam: Matrix, path_m: Vector3) -> None:
         """Add a picture that stands off its keyframe by Tr, its translation of unit length made `length_m` long."""
         dx, dy, dz = motion.direction_key
         Tr = transformation(motion.R_key_cam, (dx * length_m, dy * length_m, dz * length_m))
         x, y, z = (float(p + v) for p, v in zip(key.p_m, key.R_site_cam @ Tr[:3, 3], strict=True))
-        self._sights.append(Sight(motion.t_ns, (x, y, z), R_site_cam))
+        self._sights.append(Sight(motion.t_ns, (x, y, z), R_site_cam, path_m))

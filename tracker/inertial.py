@@ -22,6 +22,10 @@ TRUSTED_S = 2.0
 LEAK_S = 1.0
 #: Velocities that come faster than this share their say: each has noise of its own.
 VELOCITY_S = 0.5
+#: Share that a second's displacement between two fixes has in the velocity: their noise makes it three times as coarse as the
+#: integral of a second; and the longest time between two that say anything of a walker's velocity.
+DISPLACEMENT_SHARE = 0.35
+LONGEST_DISPLACEMENT_S = 3.0
 #: A prediction holds the velocity at most this long, then stands still.
 LONGEST_PREDICTION_S = 1.0
 
@@ -86,16 +90,30 @@ class InertialPath:
     def _expected(self) -> Vector3:
         return self._pace.velocity_m_s(self._yaw_offset) if self._yaw_offset_rad is not None else (0.0, 0.0, 0.0)
 
-    def correct_velocity(self, t_ns: int, v_site_m_s: Vector3, share=None) -> None:
+    def correct_velocity(self, t_ns: int, v_site_m_s: Vector3) -> None:
         """Take a velocity known at t_ns, now or in the past: what was integrated since then moves on with it."""
         then = self.at(t_ns)
         if then is None:
             return
         since_s = (t_ns - self._known_ns) * 1e-9 if self._known_ns is not None else TRUSTED_S
-        if since_s <= 0.0:
+        if since_s > 0.0:
+            share = share_of(since_s, VELOCITY_S)
+            dx, dy, dz = (share * (new - old) for new, old in zip(v_site_m_s, then.v_m_s, strict=True))
+            self._shift_velocity(t_ns, (dx, dy, dz), v_site_m_s)
+
+    def correct_by_displacement(self, from_ns: int, to_ns: int, moved_m: Vector3, from_path_m: Vector3) -> None:
+        """Take how far two fixes lie apart; `from_path_m` is where the path was at the first of them."""
+        then, dt_s = self.at(to_ns), (to_ns - from_ns) * 1e-9
+        if then is None or not 0.0 < dt_s < LONGEST_DISPLACEMENT_S:
             return
-        share = share_of(since_s, VELOCITY_S) if share is None else share
-        dx, dy, dz = (share * (new - old) for new, old in zip(v_site_m_s, then.v_m_s, strict=True))
+        rate = DISPLACEMENT_SHARE * min(1.0, dt_s) / dt_s
+        dx, dy, dz = (rate * (m - (p - f)) for m, p, f in zip(moved_m, then.p_m, from_path_m, strict=True))
+        vx, vy, vz = then.v_m_s
+        self._shift_velocity(to_ns, (dx, dy, dz), (vx + dx, vy + dy, vz + dz))
+
+    def _shift_velocity(self, t_ns: int, by_m_s: Vector3, v_site_m_s: Vector3) -> None:
+        """Add to the velocity from t_ns on; `v_site_m_s` is what it is known to have been then."""
+        dx, dy, dz = by_m_s
         states = self._states
         for index in range(len(states) - 1, -1, -1):
             state = states[index]
@@ -103,9 +121,8 @@ class InertialPath:
                 break
             dt = max(0.0, (state.t_ns - t_ns) * 1e-9)
             (px, py, pz), (vx, vy, vz) = state.p_m, state.v_m_s
-            states[index] = replace(
-                state, p_m=(px + dx * dt, py + dy * dt, pz + dz * dt), v_m_s=(vx + dx, vy + dy, vz + dz)
-            )
+            p, v = (px + dx * dt, py + dy * dt, pz + dz * dt), (vx + dx, vy + dy, vz + dz)
+            states[index] = replace(state, p_m=p, v_m_s=v)
         self._known_ns = t_ns
         if self._yaw_offset_rad is not None:
             self._pace.learn(v_site_m_s, self._yaw_offset)

@@ -17,10 +17,10 @@ import numpy as np
 
 from tracker.attitude import Madgwick
 from tracker.calibration import MeanSample, RestCalibration, SampleMean
-from tracker.camera_path import CameraPath, Sight
+from tracker.camera_path import CameraPath
 from tracker.course import CourseOverGround
 from tracker.estimator import Innovation, Origin, Pose, Snapshot
-from tracker.fix_gate import FixGate
+from tracker.fixes import Fix, FixGate, variance_m2
 from tracker.fusion import FusionFilter, FusionSettings
 from tracker.geodesy import SiteFrame, gravity_m_s2
 from tracker.geometry import (
@@ -70,19 +70,7 @@ class PaperSettings:
     outage_speed_m_s: float = 0.5
     """An old fix is off by this much more for every second of its age."""
     velocity_held_s: float = 3.0
-    """A receiver that has told no velocity for this long tells none: the filter's own is used."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Fix:
-    t_ns: int
-    t_recv_ns: int
-    p_site_m: Vector3
-    var_m2: Vector3
-    path_m: Vector3
-    """The inertial path's place then, from which it carries the fix on."""
-    sight: Sight | None
-    """The picture nearest to it, from which the camera does."""
+    """A receiver that has told no velocity for this long tells none: its fixes' displacements are used."""
 
 
 _FASTEST_CLOCK_NS = 2_000_000_000
@@ -199,9 +187,6 @@ class PaperEstimator:
             s.innovations.append(Innovation(t_ns, y_p, y_r, str(s.model)))
             s.model = self._selector.following(hypot(*y_p), hypot(*y_r), s.model)
         s.cycle_ns = t_ns
-        if 0 and s.fix_is_new and (s.velocity is None or t_ns - s.velocity.t_ns > self._settings.velocity_held_s * 1e9):
-            s.path.correct_velocity(t_ns, s.filter.velocity_m_s)
-        s.fix_is_new = False
 
     def _turn_to_north(self, filter_: FusionFilter) -> None:
         """When north becomes known, or better known, the whole past was turned by a constant: that is no innovation."""
@@ -227,16 +212,19 @@ class PaperEstimator:
         s = self._state
         if s.fix is None:
             raise RuntimeError("a cycle needs a fix")
-        sight, last = s.fix.sight, s.camera.newest
+        here, sight, last = self._path_m(t_ns), s.fix.sight, s.camera.newest
         if sight is not None and last is not None and last is not sight:
-            moved, inertial = _difference(last.p_m, sight.p_m), s.path.displacement_m(last.t_ns, t_ns)
+            moved, inertial = _difference(last.p_m, sight.p_m), _difference(here, last.path_m)
         else:
-            here = s.path.at(t_ns)
-            moved, inertial = (0.0, 0.0, 0.0), _difference(here.p_m, s.fix.path_m) if here else (0.0, 0.0, 0.0)
+            moved, inertial = (0.0, 0.0, 0.0), _difference(here, s.fix.path_m)
         x, y, z = (p + m + i for p, m, i in zip(s.fix.p_site_m, moved, inertial, strict=True))
         more = self._drift_var_m2(t_ns)
         vx, vy, vz = s.fix.var_m2
         return (x, y, z), (vx + more, vy + more, vz + more)
+
+    def _path_m(self, t_ns: int) -> Vector3:
+        state = self._state.path.at(t_ns)
+        return state.p_m if state else (0.0, 0.0, 0.0)
 
     # -- GPS ----------------------------------------------------------------------------------------------------------
 
@@ -261,19 +249,11 @@ class PaperEstimator:
                 s.filter.widen(self._drift_var_m2(fix.t_ns))
                 if insisted:
                     s.filter.value[:3] = p
-        then = s.path.at(fix.t_ns)
-        path_m = then.p_m if then else (0.0, 0.0, 0.0)
-        if old is not None and then is not None and (s.velocity is None or fix.t_ns - s.velocity.t_ns > self._settings.velocity_held_s * 1e9):
-            import os
-            dt=dt_ns*1e-9
-            k=float(os.environ.get('K','.35'))*min(1,dt)
-            if dt<3:
-                e=[(a-b-(c-d))/dt*k for a,b,c,d in zip(p,old.p_site_m,path_m,old.path_m)]
-                v=tuple(a+b for a,b in zip(then.v_m_s,e))
-                s.path.correct_velocity(fix.t_ns, v, 1.0)
-        s.fix = _Fix(fix.t_ns, fix.t_recv_ns, p, self._variance(fix), path_m, s.camera.near(fix.t_ns))
-        s.fix_is_new = True
+        var_m2 = variance_m2(fix, self._settings.gps_floor_m, self._settings.gps_var_m2)
+        s.fix = Fix(fix.t_ns, fix.t_recv_ns, p, var_m2, self._path_m(fix.t_ns), s.camera.near(fix.t_ns))
         if s.velocity is None or fix.t_ns - s.velocity.t_ns > self._settings.velocity_held_s * 1e9:
+            if old is not None:
+                s.path.correct_by_displacement(old.t_ns, fix.t_ns, _difference(p, old.p_site_m), old.path_m)
             s.course.fix(fix.t_ns, p, s.path, s.heading)
         return Outcome.USED
 
@@ -294,15 +274,6 @@ class PaperEstimator:
         s.path.correct_velocity(velocity.t_ns, velocity.v_enu_m_s)
         s.course.velocity(velocity, s.path, s.heading)
         return Outcome.USED
-
-    def _variance(self, fix: GpsFix) -> Vector3:
-        stated = (fix.cov_enu_m2[0], fix.cov_enu_m2[4], fix.cov_enu_m2[8]) if len(fix.cov_enu_m2) == 9 else (0.0,) * 3
-        floor = self._settings.gps_floor_m**2
-        x, y, z = (
-            max(v, floor) if isfinite(v) and v > 0.0 else default
-            for v, default in zip(stated, self._settings.gps_var_m2, strict=True)
-        )
-        return x, y, z
 
     # -- heading and camera -------------------------------------------------------------------------------------------
 
@@ -336,10 +307,10 @@ class PaperEstimator:
             return Outcome.REJECTED_STALE
         key = s.camera.held(motion.t_key_ns)
         if key is None:
-            key = s.camera.begin(motion.t_key_ns, self._R_site_cam(motion.t_key_ns), s.path)
+            key = s.camera.begin(motion.t_key_ns, self._R_site_cam(motion.t_key_ns), self._path_m(motion.t_key_ns))
         walked_m = hypot(*s.path.displacement_m(motion.t_key_ns, motion.t_ns)[:2])
         length_m = min(walked_m, self._settings.fastest_walk_m_s * (motion.t_ns - motion.t_key_ns) * 1e-9)
-        s.camera.chain(motion, key, length_m, self._R_site_cam(motion.t_ns))
+        s.camera.chain(motion, key, length_m, self._R_site_cam(motion.t_ns), self._path_m(motion.t_ns))
         return Outcome.USED
 
     def _R_site_cam(self, t_ns: int) -> Matrix:
@@ -406,8 +377,7 @@ class _State:
         self.cycle_ns = 0
         self.imu_ns: int | None = None
         self.imu_recv_ns = 0
-        self.fix: _Fix | None = None
-        self.fix_is_new = False
+        self.fix: Fix | None = None
         self.gate = FixGate()
         self.velocity: GpsVelocity | None = None
         self.course = CourseOverGround()

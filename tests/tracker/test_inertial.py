@@ -32,9 +32,9 @@ def test_a_reset_velocity_is_carried() -> None:
     """After a fix the displacement is v t while nothing pushes."""
     path = InertialPath(G)
     _walk(path, 0.0, 0.5)
-    path.reset_velocity((1.0, -0.5, 0.0))
+    path.correct_velocity(int(0.5e9), (1.0, -0.5, 0.0))
     _walk(path, 0.0, 1.0, start_s=0.5)
-    assert path.displacement_m(int(0.5e9), int(1.5e9)) == pytest.approx((1.0, -0.5, 0.0), abs=1e-6)
+    assert path.displacement_m(int(0.5e9), int(1.5e9)) == pytest.approx((1.0, -0.5, 0.0), rel=0.02)
     assert path.displacement_m(int(1.5e9), int(1.7e9)) == pytest.approx((0.2, -0.1, 0.0), abs=1e-6)
 
 

@@ -199,7 +199,6 @@ export class Composite {
     this.renderer.readRenderTargetPixels(target, x, shot.lens.height_px - y - height, width, height, bytes);
     this.renderer.setRenderTarget(null);
     target.dispose();
-    this.draw(shot);
     return flipRows(bytes, width, height);
   }
 

@@ -1,0 +1,172 @@
+"""The pages when something is amiss, and that they never ask anybody but their own server."""
+
+import struct
+from collections.abc import Iterator
+
+import cv2
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, Page, WebSocketRoute
+
+from server.showing import Showing
+from server.wire import is_frame
+from tests.web.pages import ArPage, open_page
+from tests.web.walk import CORNERS, NAME, showing_walk
+
+pytestmark = pytest.mark.browser
+
+NAN = struct.pack("<d", float("nan"))
+
+
+@pytest.fixture(scope="module")
+def showing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Showing]:
+    """The walk on a server, played by its truth again and again."""
+    with showing_walk(tmp_path_factory.mktemp("troubles")) as showing:
+        yield showing
+
+
+@pytest.fixture
+def ar(browser: Browser) -> Iterator[ArPage]:
+    """An empty page, without a model: none of these tests looks at the square."""
+    with open_page(browser) as page:
+        page.page.route("**/models/*", lambda route: route.fulfill(status=404))
+        yield page
+
+
+class Tampering:
+    """Between the server and the page: patches every second frame message, and notes whose."""
+
+    def __init__(self, page: Page, offset: int, patch: bytes, every: int = 2) -> None:
+        self.patched: list[int] = []
+        self.whole: list[int] = []
+        self._offset, self._patch, self._every = offset, patch, every
+        page.route_web_socket("**/ws/view/**", self._join)
+
+    def _join(self, route: WebSocketRoute) -> None:
+        server = route.connect_to_server()
+        server.on_message(lambda message: route.send(self._pass(message)))
+
+    def _pass(self, message: str | bytes) -> str | bytes:
+        if isinstance(message, str) or not is_frame(message):
+            return message
+        frame_id = int.from_bytes(message[8:12], "little")
+        if (len(self.patched) + len(self.whole)) % self._every != self._every - 1:
+            self.whole.append(frame_id)
+            return message
+        self.patched.append(frame_id)
+        end = self._offset + len(self._patch)
+        return message[: self._offset] + self._patch + message[end:]
+
+
+@pytest.mark.parametrize(
+    ("offset", "patch"),
+    [(0, b"AGF9"), (4, b"\0\0"), (32, NAN), (292, b"\0\0"), (384, b"\0\0"), (392, b"\0" * 4096)],
+    ids=["magic", "header", "pose", "size", "JPEG's start", "JPEG's tables"],
+)
+def test_a_malformed_frame_is_left_out_and_the_page_goes_on(
+    ar: ArPage, showing: Showing, offset: int, patch: bytes
+) -> None:
+    between = Tampering(ar.page, offset, patch)
+    ar.page.goto(f"{showing.url}ar")
+    ar.until("globalThis.agora && agora.stats().framesDrawn >= 3")
+    assert len(between.patched) >= 2
+    assert ar.stats()["framesDrawn"] <= len(between.whole)
+    assert ar.stats()["mismatchedFrames"] == 0
+    assert [error for error in ar.errors if "404" not in error] == []
+
+
+def test_a_pose_of_another_picture_is_counted_and_not_drawn(ar: ArPage, showing: Showing) -> None:
+    Tampering(ar.page, 12, b"\xff\xff\0\0", every=1)
+    ar.page.goto(f"{showing.url}ar")
+    ar.until("globalThis.agora && agora.stats().framesDrawn >= 2")
+    stats = ar.stats()
+    assert stats["mismatchedFrames"] == stats["framesDrawn"]
+    assert (stats["posesDrawn"], stats["overlay"], stats["lastPoseFrameId"]) == (0, "none", 65535)
+    assert ar.ask("agora.project([0, 0, 0])") is None
+
+
+@pytest.mark.parametrize(
+    ("quarter_turns", "top_left", "top_right"),
+    [(0, "top left", "top right"), (1, "bottom left", "top left"), (3, "top right", None), (2, None, "bottom left")],
+)
+def test_a_picture_on_its_side_is_turned_upright(
+    ar: ArPage, showing: Showing, quarter_turns: int, top_left: str | None, top_right: str | None
+) -> None:
+    Tampering(ar.page, 298, bytes([quarter_turns]), every=1)
+    ar.page.goto(f"{showing.url}ar")
+    ar.until("globalThis.agora && agora.stats().framesDrawn >= 1")
+    ar.page.keyboard.press("h")
+    shot = cv2.imdecode(np.frombuffer(ar.page.screenshot(), np.uint8), cv2.IMREAD_COLOR)
+    assert shot is not None
+    left = 0 if quarter_turns % 2 == 0 else 140  # on its side the picture is 360 wide in a window of 640
+    expect_corner(shot[10, left + 10, ::-1], top_left)
+    expect_corner(shot[10, 639 - left - 10, ::-1], top_right)
+    if left:
+        assert shot[10, left - 10].max() < 20
+
+
+def expect_corner(rgb: object, name: str | None) -> None:
+    """Check a pixel against a corner's colour, or against the grey of the fourth."""
+    pixel = np.asarray(rgb, float)
+    if name is None:
+        assert np.ptp(pixel) < 12
+    else:
+        assert np.abs(pixel - CORNERS[name]).max() < 30, (name, pixel)
+
+
+@pytest.mark.parametrize(
+    ("path", "words"), [("replay/tuesday", "no walk named tuesday"), ("ar?session=tuesday", "no walk named tuesday")]
+)
+def test_a_session_that_is_not_there_is_said_in_a_sentence(ar: ArPage, showing: Showing, path: str, words: str) -> None:
+    ar.page.goto(f"{showing.url}{path}")
+    ar.until("!document.querySelector('#notice').hidden")
+    assert words in ar.page.inner_text("#notice")
+    assert not ar.page.is_visible("#bar")
+    assert not ar.page.is_visible("#hud")
+    assert ar.ask("[agora.pose(), agora.project([0, 0, 0]), agora.stats().lastFrameId]") == [None, None, None]
+
+
+def test_nobody_walking_is_said_in_a_sentence(ar: ArPage, showing: Showing) -> None:
+    ar.page.route("**/api/sessions", lambda route: route.fulfill(json={"sessions": []}))
+    ar.page.goto(f"{showing.url}ar")
+    ar.until("document.querySelector('#notice').textContent.startsWith('Nobody is walking')")
+    ar.page.goto(showing.url)
+    ar.until("document.querySelector('#walks-note').textContent.startsWith('No walk')")
+
+
+def test_a_server_that_has_gone_is_said_in_a_sentence(ar: ArPage, showing: Showing) -> None:
+    ar.page.route_web_socket("**/ws/view/**", lambda route: route.close(code=1011))
+    ar.page.goto(f"{showing.url}ar")
+    ar.until("document.querySelector('#notice').textContent.startsWith('The connection is lost')")
+
+
+def test_without_its_model_the_page_still_shows_the_pictures(ar: ArPage, showing: Showing) -> None:
+    ar.page.goto(f"{showing.url}replay/{NAME}")
+    ar.until("globalThis.agora && agora.stats().framesDrawn > 0")
+    ar.until("document.querySelector('#notice').textContent.startsWith('The model of the square could not')")
+    ar.ask("agora.ready")
+
+
+def test_without_webgl_both_pages_say_so(ar: ArPage, showing: Showing) -> None:
+    ar.page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
+    for path in ("ar", ""):
+        ar.page.goto(showing.url + path)
+        ar.until("document.querySelector('#notice').textContent.includes('WebGL 2')")
+        assert ar.ask("[agora.stats(), agora.pose(), agora.project([0, 0, 0])]") == [None, None, None]
+
+
+def test_every_request_goes_to_the_pages_own_server(browser: Browser, showing: Showing) -> None:
+    with open_page(browser) as ar:
+        ar.page.goto(showing.url)
+        ar.ask("agora.ready")
+        ar.until("document.querySelector('#walks a') !== null")
+        assert "OpenStreetMap" in ar.page.inner_text("#credit")
+        ar.page.click("#walks a")
+        ar.until_drawn()
+        assert ar.page.url == f"{showing.url}replay/{NAME}"
+        assert "ODbL" in ar.page.inner_text("#credit")
+        own = (showing.url, showing.url.replace("http", "ws", 1), f"blob:{showing.url}")
+        assert [url for url in ar.requests if not url.startswith(own)] == []
+        assert any(url.endswith(f"/ws/view/{NAME}") for url in ar.requests)
+        assert any(url.endswith("/models/roman.glb") for url in ar.requests)
+        assert ar.errors == []
