@@ -13,7 +13,7 @@ from assets.terrain import Terrain
 
 LIFT_M = 0.04
 """How far paving lies over the terrain, so that the two never fight for a pixel."""
-STEEPEST = 0.8
+STEEPEST = 0.55
 """Triangles whose normal's z is less are banks: flat, of bare earth."""
 
 

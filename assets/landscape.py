@@ -107,12 +107,12 @@ def stacked(planting: Planting) -> Shape:
         (u0, u0 + 8.0, v0, v1, 24),
     )
     for a, b, c, d, count in strips:
-        for x, y, z in planting.places(count, (a, b, c, d), CLEAR_M, 1.6):
+        for x, y, z in planting.places(count, (a, b, c, d), CLEAR_M + 2.0, 1.6):
             rubble.stack(
                 shape, rng, x, y, z, -0.26 + float(rng.choice([0.0, np.pi / 2.0])) + float(rng.normal(0.0, 0.08))
             )
-    rubble.scatter(shape, rng, planting.places(420, SQUARE_UV, CLEAR_M - 0.4, 0.8), 1.0)
-    for place in planting.places(60, SQUARE_UV, CLEAR_M, 1.2):
+    rubble.scatter(shape, rng, planting.places(420, SQUARE_UV, CLEAR_M + 0.6, 0.8), 1.0)
+    for place in planting.places(60, SQUARE_UV, CLEAR_M + 1.0, 1.2):
         part = rubble.lying_drum(float(rng.uniform(0.45, 0.8)), float(rng.uniform(0.8, 2.2)))
         shape.copies(part, place[None], rng.uniform(0.0, np.pi, 1))
     for place in planting.places(30, SQUARE_UV, CLEAR_M, 1.2):
@@ -162,7 +162,7 @@ def planted(planting: Planting) -> Shape:
     for make, off_m, boxes in _PLANTS:
         variants = [make(rng) for _ in range(5)]
         for count, box in boxes:
-            places = planting.places(count, box, CLEAR_M + 0.6, off_m)
+            places = planting.places(count, box, CLEAR_M + 1.5, off_m)
             chosen = rng.integers(0, len(variants), len(places))
             for i, variant in enumerate(variants):
                 mine = places[chosen == i]

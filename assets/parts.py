@@ -179,8 +179,8 @@ def vault(
     z = spring_m + (crown_m - spring_m) * np.sin(angle)
     points = np.stack([np.stack([x, np.full_like(x, y), z], -1) for y in (y0, y1)], axis=1)
     shape.surface(material, points[:, ::-1])
-    shape.polygons(end, points[::-1, 0])
-    shape.polygons(end, points[:, 1])
+    shape.polygons(end, points[:, 0])
+    shape.polygons(end, points[::-1, 1])
 
 
 def door(shape: Shape, x_m: float, y_m: float, width_m: float, height_m: float, facing: float) -> None:

@@ -38,7 +38,7 @@ def bush(rng: np.random.Generator) -> Shape:
     for _ in range(3):
         middle = np.array([*rng.normal(0.0, 0.28, 2), rng.uniform(0.25, 0.45)])
         radii = np.array([0.5, 0.5, 0.42]) * rng.uniform(0.7, 1.1)
-        crown(shape, rng, middle, radii, 80, 0.085, tint)
+        crown(shape, rng, middle, radii, 120, 0.064, tint)
         core(shape, middle, 0.6 * radii, tint)
     return shape
 
@@ -112,5 +112,5 @@ def tufts(shape: Shape, rng: np.random.Generator, places_m: Array, height_m: Arr
     greenness = rng.beta(1.0, 2.6, (k, 1, 1))
     straw, green = np.array([0.95, 0.93, 0.86]), np.array([0.62, 0.72, 0.50])
     tint = (straw * (1.0 - greenness) + green * greenness) * rng.uniform(0.72, 1.05, (k, blades, 1))
-    normals = np.tile(unit(np.array([[0.0, -0.25, 1.0]])), (len(corners), 1))
+    normals = np.tile((0.0, 0.0, 1.0), (len(corners), 1))
     shape.leaves("straw", corners, normals, tint.reshape(-1, 3))

@@ -55,7 +55,8 @@ def bouleuterion(monument: Monument, shape: Shape) -> None:
     """The theatre-shaped council house under its timber roof: stage front with five doors, a round back with pilasters."""
     outline = footprint_own_m(monument)
     eave, ridge = monument.measure("eave_m"), monument.height_m
-    prism(shape, "ashlar", outline, -FOUNDATION_M, eave * 0.52)
+    prism(shape, "ashlar", outline, -FOUNDATION_M, 0.0)
+    prism(shape, "ashlar", outline, 0.0, eave * 0.52)
     prism(shape, "marble", offset(outline, 0.18), eave * 0.52, eave * 0.52 + 0.5)
     prism(shape, "plaster", outline, eave * 0.52 + 0.5, eave - 0.8)
     prism(shape, "marble", offset(outline, 0.25), eave - 0.8, eave)
@@ -101,7 +102,7 @@ def hip_roof(shape: Shape, outline: Array, tops: Array, eave_m: float, ridge_m: 
 def _openings(shape: Shape, outline: Array, low_m: float, high_m: float) -> None:
     """Add a dark window in the middle of every side that has room for it, and a pilaster at every corner."""
     pilaster, window = Shape(), Shape()
-    pilaster.box("marble", (-0.45, -0.14, 0.0), (0.45, 0.3, high_m + 0.8))
+    pilaster.box("marble", (-0.45, -0.14, 0.3), (0.45, 0.3, high_m + 0.8))
     window.box("wood", (-0.7, -0.06, low_m), (0.7, 0.3, high_m), 0.35)
     edges = np.roll(outline, -1, axis=0) - outline
     yaw = np.arctan2(edges[:, 1], edges[:, 0])

@@ -12,10 +12,10 @@ def stairs(monument: Monument, shape: Shape) -> None:
     """Steps that rise from the first edge of the footprint."""
     length, width = size_m(monument)
     count = int(monument.measure("steps"))
+    shape.box("marble", (0.0, 0.0, -FOUNDATION_M), (length, width, 0.0))
     for i in range(count):
-        low = 0.0 if i else -FOUNDATION_M
         top = monument.height_m * (i + 1) / count
-        shape.box("marble", (0.0, width * i / count, low), (length, width, top), 1.0 - 0.04 * (i % 2))
+        shape.box("marble", (0.0, width * i / count, 0.0), (length, width, top), 1.0 - 0.04 * (i % 2))
 
 
 def wall(monument: Monument, shape: Shape) -> None:
@@ -33,7 +33,7 @@ def socle(monument: Monument, shape: Shape) -> None:
     top = monument.height_m
     shape.box("ashlar", (0.0, 0.0, -FOUNDATION_M), (length, width, 0.0))
     shape.box("ashlar", (0.0, 0.0, 0.0), (length, width, top - 0.5))
-    for low, high, out in ((0.0, 0.5, 0.2), (0.5, 0.75, 0.1), (top - 0.7, top - 0.35, 0.15), (top - 0.35, top, 0.35)):
+    for low, high, out in ((0.0, 0.5, 0.15), (0.5, 0.75, 0.08), (top - 0.7, top - 0.35, 0.15), (top - 0.35, top, 0.35)):
         shape.box("marble", (-out, -out, low), (length + out, width + out, high))
 
 
@@ -130,7 +130,7 @@ def terrace(monument: Monument, shape: Shape) -> None:
         part = Shape()
         count = round(run / 3.6)
         x = np.linspace(0.4, run - 0.4, count)
-        for low, high, half in ((0.0, top * 0.5 - 0.5, 0.35), (top * 0.5, top - 0.6, 0.3)):
+        for low, high, half in ((0.1, top * 0.5 - 0.5, 0.35), (top * 0.5, top - 0.6, 0.3)):
             level = np.ones(count)
             lows = np.stack([x - half, -0.35 * level, low * level], -1)
             part.boxes("marble", lows, np.stack([x + half, 0.2 * level, high * level], -1))
@@ -184,9 +184,8 @@ def tower(monument: Monument, shape: Shape) -> None:
     ring[:, 2] = storey + 0.7
     part.copies(parts.column(0.6, 13.2 - storey - 0.7), ring)
     part.box("marble", (-half + 0.2, -half + 0.2, 13.2), (half - 0.2, half - 0.2, 14.2))
-    parts.revolved(
-        part, "marble", np.array([(half - 1.2, 14.2), (half - 1.2, 15.2), (half - 0.9, 15.3), (0.05, top)]), 16
-    )
+    parts.revolved(part, "marble", np.array([(half - 1.2, 14.2), (half - 1.2, 15.3)]), 16)
+    parts.revolved(part, "marble", np.array([(half - 0.9, 15.3), (0.05, top)]), 16)
     shape.copies(part, np.array([[length / 2.0, width / 2.0, 0.0]]))
 
 

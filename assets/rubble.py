@@ -37,10 +37,10 @@ def tone(rng: np.random.Generator, count: int, spread: float = 0.09) -> Array:
 
 def stack(shape: Shape, rng: np.random.Generator, x: float, y: float, z: float, yaw_rad: float) -> None:
     """Add blocks laid up for safe keeping: a row of them, others on top."""
-    layers = int(rng.integers(1, 4))
-    for layer in range(layers):
-        count = int(rng.integers(2, 5)) - layer // 2
-        along = (np.arange(count) - (count - 1) / 2.0) * rng.uniform(0.75, 0.95) + rng.normal(0.0, 0.06, count)
+    longest = int(rng.integers(2, 6))
+    for layer in range(int(rng.integers(1, min(longest, 3) + 1))):
+        count = longest - layer
+        along = (np.arange(count) - (count - 1) / 2.0) * 0.78 + rng.normal(0.0, 0.05, count)
         sizes = np.stack(
             [rng.uniform(0.5, 0.72, count), rng.uniform(0.7, 1.5, count), rng.uniform(0.38, 0.5, count)], -1
         )
@@ -118,7 +118,7 @@ def lying_drum(diameter_m: float, length_m: float) -> Shape:
     angle = np.linspace(0.0, 2.0 * np.pi, DRUM_SIDES + 1)
     y, z = radius * np.cos(angle), radius * np.sin(angle) + 0.92 * radius
     halves = [np.stack([np.full_like(y, x), y, z], -1) for x in (-length_m / 2.0, length_m / 2.0)]
-    shape.surface("stone", np.stack(halves, axis=1)[::-1])
+    shape.surface("stone", np.stack(halves, axis=1))
     shape.polygons("stone", halves[1][:-1])
     shape.polygons("stone", halves[0][:0:-1])
     return shape

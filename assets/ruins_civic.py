@@ -116,13 +116,16 @@ def _half_ring(
     profile: list[tuple[float, float]],
     tint: float,
 ) -> None:
-    """Add steps around a half circle: flat strips between neighbours of `profile` (radius, height)."""
+    """Add steps around a half circle, closed at both ends: flat strips between neighbours of `profile` (radius, height)."""
     for (r0, z0), (r1, z1) in pairwise(profile):
         inner, outer = (
             np.column_stack([ring * r + (centre_x, centre_y), np.full(len(ring), z)]) for r, z in ((r0, z0), (r1, z1))
         )
-        strip = np.stack([inner[:-1], outer[:-1], outer[1:], inner[1:]], axis=1)
-        shape.polygons(material, strip, tint)
+        shape.polygons(material, np.stack([inner[:-1], outer[:-1], outer[1:], inner[1:]], axis=1), tint)
+        if r1 > r0:
+            for end, order in ((0, 1), (-1, -1)):
+                low = np.stack([inner[end], outer[end]]) * (1.0, 1.0, 0.0)
+                shape.polygons(material, np.stack([*low, outer[end], inner[end]])[::order], tint)
 
 
 def court(monument: Monument, shape: Shape, rng: np.random.Generator) -> None:

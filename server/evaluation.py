@@ -75,20 +75,29 @@ def _write_tum(result: Run, folder: Path) -> None:
         raise InputError(f"{folder} cannot be written to: {error.strerror}.") from error
 
 
-#: Heading, key path and format of each column; a path that ends nowhere shows a dash.
-_COLUMNS: tuple[tuple[str, tuple[str, ...], str], ...] = (
-    ("updates", ("updates",), "{:d}"),
-    ("filter error\nm", ("filter_error_m", "mean"), "{:.2f}"),
-    ("\nrad", ("filter_error_rad", "mean"), "{:.3f}"),
-    ("raw GPS\nm", ("gps", "ate_rmse_m"), "{:.2f}"),
-    ("ATE\nm", ("truth", "ate_rmse_m"), "{:.2f}"),
-    ("RPE 10 s\nm", ("truth", "rpe_10s_m"), "{:.2f}"),
-    ("heading\ndeg", ("truth", "heading_rmse_deg"), "{:.2f}"),
-    ("tilt\ndeg", ("truth", "tilt_rmse_deg"), "{:.2f}"),
-    ("jitter\ncm", ("truth", "jitter_rms_m"), "{:.1f}"),
-    ("at 20 m\npx", ("truth", "registration_px", "at_20m", "median"), "{:.0f}"),
-    ("vision\n1/s", ("vision_rate_hz",), "{:.1f}"),
-    ("real\ntime", ("realtime_factor",), "{:.0f}x"),
+@dataclass(frozen=True)
+class _Column:
+    heading: str
+    path: tuple[str, ...]
+    """Keys into a run's figures; one that ends nowhere shows a dash."""
+    form: str
+    scale: int = 1
+    """What turns the figure's unit into the heading's."""
+
+
+_COLUMNS = (
+    _Column("updates", ("updates",), "{:d}"),
+    _Column("filter error\nm", ("filter_error_m", "mean"), "{:.2f}"),
+    _Column("\nrad", ("filter_error_rad", "mean"), "{:.3f}"),
+    _Column("raw GPS\nm", ("gps", "ate_rmse_m"), "{:.2f}"),
+    _Column("ATE\nm", ("truth", "ate_rmse_m"), "{:.2f}"),
+    _Column("RPE 10 s\nm", ("truth", "rpe_10s_m"), "{:.2f}"),
+    _Column("heading\ndeg", ("truth", "heading_rmse_deg"), "{:.2f}"),
+    _Column("tilt\ndeg", ("truth", "tilt_rmse_deg"), "{:.2f}"),
+    _Column("jitter\ncm", ("truth", "jitter_rms_m"), "{:.1f}", scale=100),
+    _Column("at 20 m\npx", ("truth", "registration_px", "at_20m", "median"), "{:.0f}"),
+    _Column("vision\n1/s", ("vision_rate_hz",), "{:.1f}"),
+    _Column("real\ntime", ("realtime_factor",), "{:.0f}x"),
 )
 
 
@@ -97,8 +106,8 @@ def print_table(evaluation: Evaluation, console: Console) -> None:
     table = Table(title="Against the filter's own measurements, and against truth", title_justify="left")
     table.add_column("log")
     table.add_column("estimator")
-    for heading, _, _ in _COLUMNS:
-        table.add_column(heading, justify="right")
+    for column in _COLUMNS:
+        table.add_column(column.heading, justify="right")
     last = ""
     for row in evaluation.runs:
         if last and row["log"] != last:
@@ -108,18 +117,29 @@ def print_table(evaluation: Evaluation, console: Console) -> None:
     console.print(table)
     for entry in evaluation.missing:
         console.print(f"{entry['log']} cannot run {entry['estimator']}: it has {entry['missing']}.", style="yellow")
+    # every run of a log reads the same messages, and one without a camera fewer of them: the fullest reading speaks
+    fullest: dict[str, dict[str, int]] = {}
     for row in evaluation.runs:
-        if skipped := row["counts"]["skipped"]:
-            what = ", ".join(f"{count} {reason.replace('_', ' ')}" for reason, count in sorted(skipped.items()))
-            console.print(f"{row['log']}: left out {what}.", style="dim")
+        skipped = row["counts"]["skipped"]
+        fullest[row["log"]] = max(fullest.get(row["log"], {}), skipped, key=lambda counts: sum(counts.values()))
+    for name, skipped in fullest.items():
+        _print_skipped(name, skipped, console)
+
+
+def _print_skipped(log: str, skipped: dict[str, int], console: Console) -> None:
+    if "truncated" in skipped:
+        console.print(f"{log} is cut off: it was played to where it breaks.", style="yellow")
+    reasons = sorted((reason, count) for reason, count in skipped.items() if reason != "truncated")
+    if reasons:
+        what = ", ".join(f"{count} {reason.replace('_', ' ')}" for reason, count in reasons)
+        console.print(f"{log}: left out {what}.", style="dim")
 
 
 def _cells(row: Figures) -> list[str]:
     cells = []
-    for heading, path, form in _COLUMNS:
+    for column in _COLUMNS:
         value: Any = row
-        for key in path:
+        for key in column.path:
             value = value.get(key) if value is not None else None
-        scale = 100.0 if heading.startswith("jitter") else 1
-        cells.append("-" if value is None else form.format(value * scale))
+        cells.append("-" if value is None else column.form.format(value * column.scale))
     return cells

@@ -79,7 +79,11 @@ def make_pipeline(name: str, log: Log, origin: Origin, settings: Settings | None
 
 
 def run(
-    log: Log, name: str, settings: Settings | None = None, progress: Callable[[float], None] = lambda done: None
+    log: Log,
+    name: str,
+    settings: Settings | None = None,
+    progress: Callable[[float], None] = lambda done: None,
+    origin: Origin | None = None,
 ) -> Run:
     """Run a log through an estimator.
 
@@ -88,11 +92,12 @@ def run(
         name: One of `ESTIMATORS`.
         settings: None for the defaults.
         progress: Called now and then with the share of the log that is done.
+        origin: Where the site frame is laid; None for the log's own (`log_origin`).
 
     Raises:
         UnknownEstimator, MissingSensor: See `make_pipeline`.
     """
-    origin = log_origin(log)
+    origin = origin or log_origin(log)
     pipeline = make_pipeline(name, log, origin, settings)
     info = log.info
     result = Run(log.name, name, info.t_start_ns, info.duration_s, origin, info.truth_origin)
@@ -134,7 +139,8 @@ def _feed(pipeline: Pipeline, measurement: Measurement, result: Run) -> None:
     match measurement:
         case ImuSample():
             result.counts["imu"] += 1
-            result.latencies_ns["imu"].append(took_ns)
+            if outcome is not Outcome.IGNORED:
+                result.latencies_ns["imu"].append(took_ns)
         case GpsFix():
             result.counts["gps"] += 1
             if measurement.valid:

@@ -36,6 +36,8 @@ class VideoDecoder:
 
     def decode(self, data: bytes, number: int) -> Iterator[tuple[int, VideoPicture]]:
         """Yield the pictures that a unit completes; a broken unit completes none."""
+        if not data:
+            return  # to FFmpeg nothing means the end, after which it takes no more
         packet = av.Packet(data)
         packet.pts = number
         packet.time_base = Fraction(1, 1000)

@@ -176,6 +176,8 @@ def _follow(tracks: _Tracks, gray: Image, t_ns: int) -> _Tracks:
 
 def _flow(gray: Image, onto: Image, points_px: NDArray[np.float32]) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
     """Return where points went, (N, 2), and whether they were found, (N,)."""
+    if len(points_px) == 0:  # a dark picture has no features, and OpenCV refuses none
+        return points_px, np.zeros(0, np.bool_)
     nothing: Any = None
     there, found, _ = cv2.calcOpticalFlowPyrLK(gray, onto, points_px, nothing, winSize=(17, 17), maxLevel=4)
     return np.asarray(there, np.float32), np.asarray(found).ravel() == 1

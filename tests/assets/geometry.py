@@ -31,9 +31,14 @@ def volume_m3(triangles: Points) -> float:
     return float((triangles.mean(axis=1) * across(triangles)).sum() / 3.0)
 
 
-def open_edges(triangles: Points) -> set[tuple[Points, ...]]:
+def open_edges(triangles: Points) -> set[tuple[tuple[float, ...], tuple[float, ...]]]:
     """Return the edges that do not have a second triangle on their other side, as pairs of rounded points."""
     ends = np.round(triangles, 4) + 0.0
-    edges = [(tuple(t[a]), tuple(t[b])) for t in ends for a, b in ((0, 1), (1, 2), (2, 0)) if (t[a] != t[b]).any()]
+    edges = [
+        (tuple(t[a].tolist()), tuple(t[b].tolist()))
+        for t in ends
+        for a, b in ((0, 1), (1, 2), (2, 0))
+        if (t[a] != t[b]).any()
+    ]
     there = set(edges)
     return {(a, b) for a, b in there if (b, a) not in there}

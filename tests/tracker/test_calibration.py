@@ -41,6 +41,27 @@ def test_a_turning_rig_gives_no_offset() -> None:
     assert calibration.gyro_offset_rad_s == (0.0, 0.0, 0.0)
 
 
+def test_half_a_second_of_stillness_is_no_rest() -> None:
+    """A hand that begins to turn slowly looks still for a moment; its rate is no offset."""
+    calibration = RestCalibration()
+    for k in range(60):
+        calibration.step(sample(k / 60, (0.0, 0.0, -0.014)))
+    for k in range(60, 600):
+        calibration.step(sample(k / 60, (0.0, 0.0, -0.2)))
+    assert calibration.gyro_offset_rad_s == (0.0, 0.0, 0.0)
+
+
+def test_sway_is_believed_less_than_a_table() -> None:
+    """Three seconds of blocks that scatter by 0.02 rad/s leave little of their mean; the same mean on a table stays."""
+    table, person = RestCalibration(), RestCalibration()
+    for k in range(300):
+        sway = 0.025 if (k // 51) % 2 else -0.015
+        table.step(sample(k / 100, (0.0, 0.005, 0.0)))
+        person.step(sample(k / 100, (0.0, sway, 0.0)))
+    assert table.gyro_offset_rad_s[1] == pytest.approx(0.005)
+    assert 0.0 < person.gyro_offset_rad_s[1] < 0.0025
+
+
 @pytest.mark.parametrize(("rate_hz", "group"), [(250.0, 4), (100.0, 1), (200.0, 3), (16.0, 1)])
 def test_groups_span_at_most_16_ms(rate_hz: float, group: int) -> None:
     mean = SampleMean()

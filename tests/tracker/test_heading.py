@@ -47,3 +47,56 @@ def test_a_course_needs_walking_and_agreement() -> None:
     for _ in range(6):
         heading.course((0.0, 1.3, 0.0), wxyz_from_yaw(0.5))
     assert heading.yaw_offset_rad == pytest.approx(pi / 2 - 0.5)
+
+
+def test_the_first_word_of_a_compass_is_used_and_small_changes_are_not() -> None:
+    """Pictures are right from the start; the world turns once more only if the mean says something else."""
+    heading = StartHeading(0.0)
+    heading.compass(0, 1.0, wxyz_from_yaw(0.0))
+    assert heading.yaw_offset_rad == 1.0
+    for index in range(1, 30):
+        heading.compass(index * 100_000_000, 1.03, wxyz_from_yaw(0.0))
+    assert heading.yaw_offset_rad == 1.0
+    assert heading.is_final
+    jumpy = StartHeading(0.0)
+    for index in range(30):
+        jumpy.compass(index * 100_000_000, 1.0 if index else 2.0, wxyz_from_yaw(0.0))
+    assert jumpy.yaw_offset_rad == pytest.approx(1.0, abs=0.11)
+
+
+def _gains(heading: StartHeading, yaw: float, count: int) -> None:
+    """Starts and stops in turning directions, felt in a level frame that is off by yaw."""
+    for index in range(count):
+        x, y = cos(2.4 * index), sin(2.4 * index)
+        heading.gain((x * cos(yaw) + y * sin(yaw), y * cos(yaw) - x * sin(yaw)), (x, y))
+
+
+@given(yaw=ANGLES)
+def test_gains_of_velocity_find_north_whatever_the_rig_looks_at(yaw: float) -> None:
+    """And they stand for good once there are enough of them."""
+    heading, unsure = StartHeading(0.0), StartHeading(0.0)
+    _gains(unsure, yaw, 2)
+    assert unsure.yaw_offset_rad is None
+    _gains(heading, yaw, 100)
+    assert heading.is_final
+    assert heading.yaw_offset_rad is not None
+    assert wrap_rad(heading.yaw_offset_rad - yaw) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_gains_win_over_a_course_that_contradicts_them() -> None:
+    """A rig held backwards: the course says 180 degrees, the accelerometer knows better."""
+    heading = StartHeading(0.0)
+    for _ in range(12):
+        heading.course((1.3, 0.0, 0.0), wxyz_from_yaw(0.0))
+    assert heading.yaw_offset_rad == pytest.approx(0.0)
+    _gains(heading, 3.0, 12)
+    assert heading.yaw_offset_rad == pytest.approx(3.0, abs=1e-6)
+
+
+def test_gains_that_do_not_match_say_nothing() -> None:
+    """Small ones are noise; incoherent ones are two different motions."""
+    heading = StartHeading(0.0)
+    for index in range(200):
+        heading.gain((cos(index), sin(index)), (cos(2.5 * index), sin(2.5 * index)))
+        heading.gain((0.3, 0.0), (0.3, 0.0))
+    assert heading.yaw_offset_rad is None

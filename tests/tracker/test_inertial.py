@@ -4,7 +4,8 @@ import pytest
 
 from tracker.calibration import MeanSample
 from tracker.geometry import wxyz_from_yaw
-from tracker.inertial import InertialPath
+from tracker.inertial import TRUSTED_S, VELOCITY_S, InertialPath
+from tracker.pace import share_of
 
 G = 9.81
 LEVEL = (1.0, 0.0, 0.0, 0.0)
@@ -28,14 +29,44 @@ def test_constant_acceleration() -> None:
     assert 0.4 < dy < 0.5 * 0.5 * 1.98**2
 
 
-def test_a_reset_velocity_is_carried() -> None:
-    """After a fix the displacement is v t while nothing pushes."""
+def test_a_known_velocity_is_carried() -> None:
+    """What a receiver says of the velocity is taken from its stamp on, also where the path has gone on since."""
+    path = InertialPath(G)
+    _walk(path, 0.0, 1.0)
+    path.correct_velocity(int(0.5e9), (1.0, -0.5, 0.0))
+    path.correct_velocity(int(0.5e9), (7.0, 7.0, 7.0))  # of the same time: it says nothing new
+    _walk(path, 0.0, 0.5, start_s=1.0)
+    share = share_of(TRUSTED_S, VELOCITY_S)
+    for until_s in (1.0, 1.5):
+        moved = path.displacement_m(int(0.5e9), int(until_s * 1e9))
+        assert moved == pytest.approx((share * (until_s - 0.5), -0.5 * share * (until_s - 0.5), 0.0), abs=1e-9)
+    assert path.displacement_m(int(0.1e9), int(0.4e9)) == (0.0, 0.0, 0.0)
+    assert path.displacement_m(int(1.5e9), int(1.7e9)) == pytest.approx((0.2 * share, -0.1 * share, 0.0), abs=1e-9)
+
+
+def test_fixes_without_velocity_teach_it_in_seconds() -> None:
+    """A receiver that tells only where it is: ten seconds of walking, and the path walks as fast."""
+    path = InertialPath(G)
+    _walk(path, 0.0, 1.0)
+    for second in range(1, 11):
+        before = path.at(second * 10**9)
+        assert before is not None
+        _walk(path, 0.0, 1.0, start_s=second)
+        path.correct_by_displacement(second * 10**9, (second + 1) * 10**9, (0.0, 1.2, 0.0), before.p_m)
+    newest = path.newest
+    assert newest is not None
+    assert newest.v_m_s == pytest.approx((0.0, 1.2, 0.0), abs=0.05)
+
+
+def test_a_long_silence_ends_in_the_walkers_pace() -> None:
+    """After an outage's first seconds a velocity that no step supports dies away instead of running off."""
     path = InertialPath(G)
     _walk(path, 0.0, 0.5)
-    path.correct_velocity(int(0.5e9), (1.0, -0.5, 0.0))
-    _walk(path, 0.0, 1.0, start_s=0.5)
-    assert path.displacement_m(int(0.5e9), int(1.5e9)) == pytest.approx((1.0, -0.5, 0.0), rel=0.02)
-    assert path.displacement_m(int(1.5e9), int(1.7e9)) == pytest.approx((0.2, -0.1, 0.0), abs=1e-6)
+    path.correct_velocity(int(0.5e9), (1.0, 0.0, 0.0))
+    _walk(path, 0.3, 20.0, start_s=0.5)
+    newest = path.newest
+    assert newest is not None
+    assert abs(newest.v_m_s[0]) < 0.5
 
 
 def test_without_north_a_force_moves_nothing() -> None:
