@@ -16,6 +16,7 @@ from mcap.records import Channel, Chunk, Message, Schema
 from mcap.stream_reader import StreamReader, breakup_chunk
 
 from tracker.errors import MalformedInput
+from tracker.salvage import cut_chunk
 
 _MAGIC = b"\x89MCAP0\r\n"
 #: A record that claims more than this is damage.
@@ -59,7 +60,7 @@ class Container:
         self._channels: dict[int, tuple[str, str]] = {}
         self._schemas: dict[int, str] = {}
         self._loose: list[Stored] = []
-        """Messages outside chunks: few recorders write them."""
+        """Messages outside whole chunks: few recorders write them, but the last chunk of a cut file is here."""
         with _open(path) as file:
             self._scan(file, visit)
         self._spans.sort(key=lambda span: span.start_ns)
@@ -104,13 +105,18 @@ class Container:
                 return
             except Exception:  # the end of a cut file, or bytes that are no record
                 self.truncated = True
+                for rest in cut_chunk(file, offset):
+                    self._scan_loose(rest, visit)
                 return
             if isinstance(record, Chunk):
                 self._scan_chunk(record, offset, visit)
             else:
-                for stored in self._learn(record):
-                    self._loose.append(stored)
-                    visit(stored)
+                self._scan_loose(record, visit)
+
+    def _scan_loose(self, record: object, visit: Callable[[Stored], None]) -> None:
+        for stored in self._learn(record):
+            self._loose.append(stored)
+            visit(stored)
 
     def _scan_chunk(self, chunk: Chunk, offset: int, visit: Callable[[Stored], None]) -> None:
         try:

@@ -20,7 +20,7 @@ from tracker.calibration import MeanSample, RestCalibration, SampleMean
 from tracker.camera_path import CameraPath
 from tracker.course import CourseOverGround
 from tracker.estimator import Innovation, Origin, Pose, Snapshot
-from tracker.fixes import Fix, FixGate, variance_m2
+from tracker.fixes import FASTEST_M_S, Fix, FixGate, variance_m2
 from tracker.fusion import FusionFilter, FusionSettings
 from tracker.geodesy import SiteFrame, gravity_m_s2
 from tracker.geometry import (
@@ -73,8 +73,8 @@ class PaperSettings:
     """A receiver that has told no velocity for this long tells none: its fixes' displacements are used."""
 
 
+#: A stamp that runs ahead of its arrival by more than this, since the one before, is a clock that leapt.
 _FASTEST_CLOCK_NS = 2_000_000_000
-_FASTEST_M_S = 100.0
 
 
 class PaperEstimator:
@@ -134,7 +134,7 @@ class PaperEstimator:
         if s.imu_ns is not None:
             if sample.t_ns <= s.imu_ns:
                 return Outcome.REJECTED_STALE
-            if sample.t_ns - s.imu_ns > sample.t_recv_ns - s.imu_recv_ns + _FASTEST_CLOCK_NS:
+            if _leapt(sample.t_ns - s.imu_ns, sample.t_recv_ns - s.imu_recv_ns):
                 return Outcome.REJECTED_GATE
         s.imu_ns, s.imu_recv_ns = sample.t_ns, sample.t_recv_ns
         s.calibration.step(sample)
@@ -240,9 +240,7 @@ class PaperEstimator:
             if fix.t_ns <= old.t_ns:
                 return Outcome.REJECTED_STALE
             dt_ns = fix.t_ns - old.t_ns
-            if dt_ns > fix.t_recv_ns - old.t_recv_ns + _FASTEST_CLOCK_NS:
-                return Outcome.REJECTED_GATE
-            if s.gate.refuses(old.p_site_m, p, dt_ns * 1e-9):
+            if _leapt(dt_ns, fix.t_recv_ns - old.t_recv_ns) or s.gate.refuses(old.p_site_m, p, dt_ns * 1e-9):
                 return Outcome.REJECTED_GATE
             insisted = s.gate.insisted()
             if s.filter is not None:
@@ -266,10 +264,14 @@ class PaperEstimator:
     def _step_velocity(self, velocity: GpsVelocity) -> Outcome:
         """The receiver's own velocity is the integral's v(0); its gains, and its course, tell the start heading."""
         s = self._state
-        if not all(map(isfinite, velocity.v_enu_m_s)) or hypot(*velocity.v_enu_m_s) > _FASTEST_M_S:
+        if not all(map(isfinite, velocity.v_enu_m_s)):
             return Outcome.REJECTED_NOT_FINITE
-        if s.velocity is not None and velocity.t_ns <= s.velocity.t_ns:
+        old = s.velocity
+        if old is not None and velocity.t_ns <= old.t_ns:
             return Outcome.REJECTED_STALE
+        leapt = old is not None and _leapt(velocity.t_ns - old.t_ns, velocity.t_recv_ns - old.t_recv_ns)
+        if leapt or hypot(*velocity.v_enu_m_s) > FASTEST_M_S:
+            return Outcome.REJECTED_GATE
         s.velocity = velocity
         s.path.correct_velocity(velocity.t_ns, velocity.v_enu_m_s)
         s.course.velocity(velocity, s.path, s.heading)
@@ -384,6 +386,10 @@ class _State:
         self.compass_waiting: CompassHeading | None = None
         self.camera = CameraPath()
         self.innovations: list[Innovation] = []
+
+
+def _leapt(stamps_ns: int, arrivals_ns: int) -> bool:
+    return stamps_ns > arrivals_ns + _FASTEST_CLOCK_NS
 
 
 def _difference(a: Vector3, b: Vector3) -> Vector3:

@@ -12,7 +12,8 @@ from tracker.estimator import Estimator, Pose
 from tracker.estimators import ESTIMATORS, build
 from tracker.geodesy import SiteFrame
 from tracker.geomagnetism import declination_rad
-from tracker.measurements import GpsFix, ImuSample, Measurement, Outcome, TruePose, VisualMotion
+from tracker.geometry import matrix_from_wxyz
+from tracker.measurements import GpsFix, GpsVelocity, ImuSample, MagSample, Measurement, Outcome, TruePose, VisualMotion
 from tracker.simulate import AGORA_ORIGIN, START_NS, Walk, WalkSettings, default_rig, simulate
 
 SITE = SiteFrame(AGORA_ORIGIN)
@@ -143,6 +144,11 @@ def test_bad_measurements_are_outcomes(measurements: list[Measurement]) -> None:
         estimator.step(replace(fix, t_ns=later, valid=False, lat_deg=nan)),
         estimator.step(replace(fix, t_ns=later, lat_deg=nan)),
         estimator.step(replace(fix, t_ns=later, lat_deg=fix.lat_deg + 1.0)),
+        estimator.step(replace(fix, t_ns=fix.t_ns + 10**13)),
+        estimator.step(GpsVelocity(later, later, (nan, 0.0, 0.0))),
+        estimator.step(GpsVelocity(later, later, (900.0, 0.0, 0.0))),
+        estimator.step(GpsVelocity(later + 10**13, later, (1.0, 0.0, 0.0))),
+        estimator.step(GpsVelocity(0, later, (1.0, 0.0, 0.0))),
         estimator.step(VisualMotion(0, 0, 0, 0, np.eye(3), (0.0, 0.0, 0.0), 0, 0.0, False)),
     ]
     assert outcomes == [
@@ -152,6 +158,11 @@ def test_bad_measurements_are_outcomes(measurements: list[Measurement]) -> None:
         Outcome.REJECTED_WEAK,
         Outcome.REJECTED_NOT_FINITE,
         Outcome.REJECTED_GATE,
+        Outcome.REJECTED_GATE,
+        Outcome.REJECTED_NOT_FINITE,
+        Outcome.REJECTED_GATE,
+        Outcome.REJECTED_GATE,
+        Outcome.REJECTED_STALE,
         Outcome.IGNORED,
     ]
 
@@ -180,6 +191,56 @@ def test_without_gps_the_outage_grows_the_covariance(measurements: list[Measurem
     assert before is not None
     assert after is not None
     assert after.cov[0, 0] > 10.0 + before.cov[0, 0]
+
+
+def _errors_m(poses: list[Pose], walk: Walk) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    truth = walk.at(np.array([pose.t_ns for pose in poses])).p_m[:, :2]
+    return np.asarray(np.hypot(*(np.array([pose.p_site_m[:2] for pose in poses]) - truth).T))
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("name", ["gps-imu/cmm", "gps-imu/famm"])
+def test_an_outage_is_walked_through(name: str, seed: int) -> None:
+    """Fifteen seconds of silence: better than standing still at the last fix, and no leap when the receiver comes back."""
+    walk = Walk(WalkSettings(seed=seed, duration_s=70.0, imu_hz=100.0), default_rig())
+    estimator, during, after, held, last = _build(name), [], [], [], (0.0, 0.0, 0.0)
+    for index, m in enumerate(simulate(walk)):
+        t_s = (m.t_recv_ns - START_NS) * 1e-9
+        if isinstance(m, GpsFix | GpsVelocity) and 40.0 < t_s < 55.0:
+            continue
+        if isinstance(m, GpsFix):
+            last = SITE.site_from_geodetic(m.lat_deg, m.lon_deg, m.h_ellipsoid_m)
+        estimator.step(m)
+        pose = estimator.predict(m.t_recv_ns)
+        if pose is None or index % 20:
+            continue
+        if 42.0 < t_s < 55.0:
+            during.append(pose)
+            held.append(replace(pose, p_site_m=last))
+        elif 58.0 < t_s < 68.0:
+            after.append(pose)
+    assert np.mean(_errors_m(during, walk)) < np.mean(_errors_m(held, walk))
+    assert np.max(_errors_m(after, walk)) < 7.0
+    assert max(np.hypot(*pose.v_site_m_s[:2]) for pose in after) < 2.5
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_north_without_a_magnetometer(seed: int) -> None:
+    """A minute and a half of walking tells it to a few degrees, from a start that knew nothing; until then it says so."""
+    walk = Walk(WalkSettings(seed=seed, duration_s=90.0, imu_hz=100.0), default_rig())
+    estimator = _build("gps-imu/famm")
+    stepped = [m for m in simulate(walk) if not isinstance(m, MagSample | TruePose)]
+    for index, m in enumerate(stepped):
+        estimator.step(m)
+        pose = estimator.predict(m.t_recv_ns)
+        if index == 900:
+            assert pose is not None
+            assert not pose.heading_known
+    assert pose is not None
+    assert pose.heading_known
+    truth = walk.at(np.array([pose.t_ns])).R_site_body[0]
+    turn = truth.T @ matrix_from_wxyz(pose.wxyz_site_body)
+    assert np.degrees(np.arccos(np.clip((np.trace(turn) - 1.0) / 2.0, -1.0, 1.0))) < 12.0
 
 
 def test_motion_models(measurements: list[Measurement]) -> None:

@@ -1,0 +1,103 @@
+"""`agora evaluate` on small logs: table, JSON, poses for other tools, and one sentence for what cannot be done."""
+
+import json
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+from evo.tools import file_interface
+from rich.console import Console
+from typer.testing import CliRunner
+
+from server.cli import app
+from server.evaluation import Evaluation, evaluate, print_table, write_json
+from tracker.errors import InputError, MalformedInput, MissingSensor, UnknownEstimator
+from tracker.log_writer import LogWriter
+from tracker.measurements import ImuSample
+from tracker.simulate import AGORA_ORIGIN, START_NS, Walk, WalkSettings, default_rig, simulate
+
+RIG = default_rig()
+
+
+@pytest.fixture(scope="module")
+def walk(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Half a minute without a camera."""
+    path = tmp_path_factory.mktemp("evaluation") / "walk.mcap"
+    settings = WalkSettings(seed=5, duration_s=32.0, still_s=4.0, imu_hz=100.0, truth_hz=50.0)
+    with LogWriter(path, RIG, AGORA_ORIGIN, t_start_ns=START_NS) as writer:
+        for measurement in simulate(Walk(settings, RIG)):
+            writer.write(measurement)
+    return path
+
+
+def _nothing(label: str, done: float) -> None:
+    pass
+
+
+def _printed(evaluation: Evaluation) -> str:
+    console = Console(file=StringIO(), width=200, highlight=False)
+    print_table(evaluation, console)
+    assert isinstance(console.file, StringIO)
+    return console.file.getvalue()
+
+
+def test_all_that_the_sensors_allow(walk: Path, tmp_path: Path) -> None:
+    """Three estimators run; the two with a camera say what is missing; the files are what other programs read."""
+    evaluation = evaluate([walk], (), tmp_path / "poses", _nothing)
+    assert [row["estimator"] for row in evaluation.runs] == ["gps-imu/cmm", "gps-imu/famm", "truth"]
+    write_json(evaluation, tmp_path / "figures.json")
+    found = json.loads((tmp_path / "figures.json").read_text())
+    assert [(m["estimator"], m["missing"]) for m in found["missing"]] == [
+        ("camera-gps-imu/cmm", "no camera"),
+        ("camera-gps-imu/famm", "no camera"),
+    ]
+    assert found["runs"] == evaluation.runs
+    table = _printed(evaluation)
+    assert "walk cannot run camera-gps-imu/cmm: it has no camera." in table
+    assert "cut off" not in table
+    trajectory = file_interface.read_tum_trajectory_file(tmp_path / "poses" / "walk.gps-imu-famm.tum")
+    assert np.median(np.diff(trajectory.timestamps)) == pytest.approx(0.02, abs=1e-5)
+    assert trajectory.num_poses > 1500
+
+
+def test_centimetres_in_the_table_metres_in_the_json(walk: Path) -> None:
+    """The one column whose unit is not the figure's."""
+    evaluation = evaluate([walk], ("gps-imu/cmm",), None, _nothing)
+    jitter_m = evaluation.runs[0]["truth"]["jitter_rms_m"]
+    assert 0.0 < jitter_m < 1.0
+    assert f" {100.0 * jitter_m:.1f} " in _printed(evaluation)
+
+
+def test_a_cut_log_is_played_to_where_it_breaks(walk: Path, tmp_path: Path) -> None:
+    """Once for the log, not once for each estimator; it counts as done."""
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(walk.read_bytes()[: walk.stat().st_size * 9 // 10])
+    result = CliRunner().invoke(app, ["evaluate", str(cut), "--json", str(tmp_path / "cut.json")])
+    assert result.exit_code == 0
+    assert result.output.count("cut is cut off: it was played to where it breaks.") == 1
+    rows = json.loads((tmp_path / "cut.json").read_text())["runs"]
+    assert all(row["counts"]["skipped"]["truncated"] == 1 for row in rows)
+
+
+def test_what_cannot_be_done_is_one_sentence(walk: Path, tmp_path: Path) -> None:
+    """A log that is not there, one that is no log, a name that is none, and nothing left to run."""
+    text = tmp_path / "text.mcap"
+    text.write_text("no log")
+    imu_only = tmp_path / "imu-only.mcap"
+    with LogWriter(imu_only, RIG, None, t_start_ns=0) as writer:
+        writer.write(ImuSample(1, 1, (0.0, 0.0, 0.0), (0.0, 0.0, 9.81)))
+    for paths, names, kind, words in (
+        ([tmp_path / "none.mcap"], (), MalformedInput, "There is no file"),
+        ([walk, text], (), MalformedInput, "is not an MCAP file"),
+        ([walk], ("kalman",), UnknownEstimator, "There is no estimator 'kalman'"),
+        ([imu_only], (), MissingSensor, "imu-only has no GPS for gps-imu/cmm"),
+    ):
+        with pytest.raises(kind, match=words) as error:
+            evaluate(paths, names, None, _nothing)
+        assert str(error.value).endswith(".")
+        assert "\n" not in str(error.value)
+    with pytest.raises(InputError, match="cannot be written"):
+        write_json(Evaluation(), tmp_path / "no folder" / "figures.json")
+    with pytest.raises(InputError, match="cannot be written to"):
+        evaluate([walk], ("truth",), text, _nothing)
