@@ -1,17 +1,20 @@
 """An MCAP file as messages in order of arrival, read so that damage costs only what it touched.
 
-The summary and index at a file's end are not used: a walk that was cut off has none, and walking over the records of a whole one
-costs milliseconds. `mcap` reads each record; this file knows where they lie.
+The index at a file's end is not used: a walk that was cut off has none, and walking over the records of a whole one costs
+milliseconds. `mcap` reads each record; this file knows where they lie.
 """
 
 import heapq
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from os import SEEK_END
 from pathlib import Path
+from struct import Struct
 from typing import BinaryIO
 
 from mcap.exceptions import McapError
+from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, Message, Schema
 from mcap.stream_reader import StreamReader, breakup_chunk
 
@@ -22,6 +25,8 @@ _MAGIC = b"\x89MCAP0\r\n"
 #: A record that claims more than this is damage.
 _LARGEST_RECORD = 1 << 30
 _LARGEST_CHUNK = 1 << 30
+#: The last record of a whole file: opcode, length, where the summary begins, its offsets, its checksum.
+_FOOTER = Struct("<BQQQI")
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +67,7 @@ class Container:
         self._loose: list[Stored] = []
         """Messages outside whole chunks: few recorders write them, but the last chunk of a cut file is here."""
         with _open(path) as file:
+            self._learn_summary(file)
             self._scan(file, visit)
         self._spans.sort(key=lambda span: span.start_ns)
         self._loose.sort(key=lambda stored: stored.t_recv_ns)
@@ -92,6 +98,19 @@ class Container:
             return self._open_chunk(record) if isinstance(record, Chunk) else []
         except Exception:  # what damaged bytes make zstd, lz4 and mcap raise; counted when the file was opened
             return []
+
+    def _learn_summary(self, file: BinaryIO) -> None:
+        """Learn channels from their copies at the end of a whole file: their first mention may lie in a damaged chunk."""
+        try:
+            file.seek(-_FOOTER.size - len(_MAGIC), SEEK_END)
+            opcode, _, summary_start, _, _ = _FOOTER.unpack(file.read(_FOOTER.size))
+            if opcode != Opcode.FOOTER or summary_start == 0:
+                return
+            file.seek(summary_start)
+            for record in _reader(file).records:
+                self._learn(record)
+        except Exception:  # no summary, or bytes that are none: the chunks have to do
+            return
 
     def _scan(self, file: BinaryIO, visit: Callable[[Stored], None]) -> None:
         file.seek(len(_MAGIC))
