@@ -17,6 +17,7 @@ ALLOWED_LIBRARIES = {
     "tracker/video.py": {"av"},
     "tracker/container.py": {"mcap"},
     "tracker/log_writer.py": {"mcap"},
+    "tracker/salvage.py": {"lz4", "mcap", "zstandard"},
     "tracker/ros_messages.py": {"rosbags"},
     "tracker/geomagnetism.py": {"pygeomag"},
     "tracker/sources/camera.py": {"cv2"},

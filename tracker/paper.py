@@ -3,9 +3,11 @@
 Bostanci et al., Sensor fusion of camera, GPS and IMU using fuzzy adaptive multiple motion models, arXiv 1512.02766.
 Where the text is silent or its literal equation breaks, this takes the readings `keyframe_local` and `sane`:
 
-- m_R is Madgwick's attitude turned to north once at the start.
+- m_R is Madgwick's attitude turned to north at the start: once by a compass or magnetometer, else by the receiver's motion.
 - m_P is the last fix, carried on by the camera's motion since the keyframe nearest that fix (camera), and by the doubly
   integrated specific force since then (what the camera has not covered, or everything without one).
+- v(0) of that integral is the receiver's own velocity, or what its fixes' displacements say where it tells none. While there
+  are no fixes the walker goes on at their pace (`tracker/pace.py`), and m_P counts for less with every second.
 - The essential matrix gives no length, so the camera's step is as long as the IMU's over the same time.
 """
 
