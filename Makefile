@@ -54,7 +54,7 @@ demo: setup ## play the recorded walk as AR in a browser; ARGS="--no-browser --p
 
 setup: $(BIN)/.demo web/dist/.complete $(MODELS)/.complete ## all that `agora demo` needs: environment, web bundle, models
 
-build: $(BIN)/.demo ## build the site's models anew; ARGS="--report" goes to agora build
+build: $(BIN)/.demo web/node_modules/.package-lock.json ## build the site's models, where anything has changed; ARGS="--report" goes to agora build
 	@$(BIN)/agora build $(ARGS)
 
 test: setup check machine ## set up, check, and run every test
@@ -74,6 +74,9 @@ check: $(BIN)/.dev web/node_modules/.package-lock.json ## format, lint and types
 bench: setup $(BIN)/.dev ## measure speed beside the peers; writes build/bench.json
 	@mkdir -p build
 	@$(BIN)/python tests/benchmarks/run.py $(ARGS)
+
+gallery: setup $(BIN)/.dev ## draw docs/gallery.md and the golden pictures of the tests anew, in a browser
+	@$(BIN)/python -m tests.web.gallery
 
 lock: | $(UV) ## renew the lock files from pyproject.toml; ARGS="--upgrade" takes newer releases
 	$(UV_PIP) compile --quiet --universal --generate-hashes --python-version 3.11 $(ARGS) -o requirements.lock pyproject.toml
@@ -137,7 +140,7 @@ web/dist/.complete: build/inputs/web web/node_modules/.package-lock.json
 	@npm --prefix web run --silent build
 	@touch $@
 
-$(MODELS)/.complete: build/inputs/models
+$(MODELS)/.complete: build/inputs/models web/node_modules/.package-lock.json
 	@$(call say,building the models)
 	@$(BIN)/agora build
 	@touch $@
@@ -149,4 +152,4 @@ build/inputs/web: FORCE
 	@$(call list_inputs,web,-path web/node_modules -o -path web/dist)
 
 build/inputs/models: FORCE | $(BIN)/.demo
-	@$(call list_inputs,assets requirements.lock,-name __pycache__ -o -path $(MODELS))
+	@$(call list_inputs,assets web/tools web/package-lock.json requirements.lock,-name __pycache__ -o -path $(MODELS))

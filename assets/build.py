@@ -1,71 +1,43 @@
-"""`agora build`: a site's models from its facts, and what they weigh."""
+"""`agora build`: a site's models from its facts, at three levels of detail, packed for a page."""
 
 import os
+import tempfile
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import asdict, dataclass
 from functools import partial
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
+from assets.budgets import BuildReport, BuiltFile, tour_costs
 from assets.errors import AssetError
 from assets.gltf import Scene, write_glb
+from assets.inputs import MEMORY, inputs_hash, memory_of, remembered
+from assets.levels import LEVELS, PAGE_RULES, Drawn, drawn_of, with_copies_cut, with_meshes_cut
+from assets.occluders import occluders
+from assets.packing import pack
 from assets.roman import build_roman
 from assets.site import Site
+from assets.surfaces import Surface, first_surfaces, full_surfaces, gpu_bytes, plain_surfaces
+from assets.terrain import build_terrain
+from assets.textures import Texture
 from assets.today import build_today
+from assets.walkable import walkable
 
-MODELS: dict[str, Callable[[Site, Callable[[float], None]], Scene]] = {"roman": build_roman, "today": build_today}
-FIRST_PAINT = "roman"
-"""The model that a page needs before it can draw anything."""
-
-
-@dataclass(frozen=True)
-class BuiltFile:
-    """One file of a build."""
-
-    path: str
-    """Relative to the site's folder."""
-    bytes: int
-    sha256: str
-    model: str
-    level: int
-    """0 is the finest."""
-
-
-@dataclass(frozen=True)
-class BuildReport:
-    """What was built. Draw calls, triangles and graphics memory are those of the model that a page draws."""
-
-    files: tuple[BuiltFile, ...]
-    draw_calls: int
-    triangles: int
-    gpu_bytes: int
-
-    @property
-    def total_bytes(self) -> int:
-        """Size of all files."""
-        return sum(file.bytes for file in self.files)
-
-    @property
-    def first_paint_bytes(self) -> int:
-        """Size of what a page loads before it can draw."""
-        return sum(file.bytes for file in self.files if file.model == FIRST_PAINT)
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain values for JSON."""
-        return {
-            "files": [asdict(file) for file in self.files],
-            "total_bytes": self.total_bytes,
-            "first_paint_bytes": self.first_paint_bytes,
-            "draw_calls": self.draw_calls,
-            "triangles": self.triangles,
-            "gpu_bytes": self.gpu_bytes,
-        }
+MODELS: dict[str, Callable[..., Scene]] = {"roman": build_roman, "today": build_today}
+MATERIALS_FILE = "materials.glb"
+"""The full textures of all models. Level 2 has small ones of its own; the finer levels name their materials only."""
+MADE, PAINTED = 0.5, 0.8
+"""Shares of the work that are done when the models are made, and when only packing is left."""
+PACKED = ".packed.glb"
+FOR_ANY_READER = ("occluders",)
+"""The operator's console shows these, and cannot unpack."""
 
 
 def build(site: Site, folder: Path, progress: Callable[[float], None]) -> BuildReport:
     """Write every model of a site into `folder` and return what was written; the same facts give the same bytes.
+
+    Where nothing has changed since the last build into that folder, nothing is made.
 
     Args:
         site: The facts.
@@ -74,29 +46,99 @@ def build(site: Site, folder: Path, progress: Callable[[float], None]) -> BuildR
 
     Raises:
         SiteError: The facts do not suffice.
+        PackerMissing: There is no Node.js to pack with.
         AssetError: The folder cannot be written.
     """
-    files, drawn = [], Scene([], {})
-    for i, (name, make) in enumerate(MODELS.items()):
-        scene = make(site, partial(_report, progress, i))
-        data = write_glb(
-            scene, {"site": site.id, "model": name, "attribution": site.attribution, "licence": site.licence}
+    key = inputs_hash(site.folder, folder)
+    known = remembered(folder, key)
+    if known is not None:
+        progress(1.0)
+        return known
+    with tempfile.TemporaryDirectory(prefix="agora-build-") as raw:
+        made = _Made(site, Path(raw))
+        jobs = [(model, level) for model in MODELS for level in LEVELS]
+        for i, (model, level) in enumerate(jobs):
+            made.add_model(model, level, partial(_part, progress, MADE * i / len(jobs), MADE / len(jobs)))
+        made.add_materials()
+        made.add_proxies()
+        progress(PAINTED)
+        pack(
+            {path: path.with_suffix(PACKED) for path in made.to_pack},
+            partial(_part, progress, PAINTED, 0.99 - PAINTED),
         )
-        path = folder / f"{name}.glb"
-        _write(path, data)
-        files.append(BuiltFile(_relative(path, site.folder), len(data), sha256(data).hexdigest(), name, 0))
-        drawn = scene if name == FIRST_PAINT else drawn
-        progress((i + 1) / len(MODELS))
-    return BuildReport(
-        tuple(files),
-        draw_calls=sum(len(node.meshes) for node in drawn.nodes),
-        triangles=sum(node.triangles for node in drawn.nodes),
-        gpu_bytes=_gpu_bytes(drawn),
-    )
+        files = tuple(made.move(path, folder) for path in made.files)
+    report = BuildReport(files, *made.worst_costs(), gpu_bytes(made.surfaces.values()))
+    _write(folder / MEMORY, memory_of(key, report))
+    progress(1.0)
+    return report
 
 
-def _report(progress: Callable[[float], None], before: int, share: float) -> None:
-    progress((before + 0.9 * share) / len(MODELS))
+def _part(progress: Callable[[float], None], start: float, size: float, share: float) -> None:
+    progress(start + size * share)
+
+
+class _Made:
+    """Raw files of a build in a folder of their own, and what is known of them."""
+
+    def __init__(self, site: Site, folder: Path) -> None:
+        self.site = site
+        self.folder = folder
+        self.files: dict[Path, tuple[str, int]] = {}
+        """Model and level of each file."""
+        self.to_pack: list[Path] = []
+        self.drawn: dict[str, dict[int, list[Drawn]]] = {}
+        self.surfaces: dict[str, Surface] = {}
+        self._textures: dict[str, Texture] = {}
+        self._today: Scene | None = None
+
+    def add_model(self, model: str, level: int, progress: Callable[[float], None]) -> None:
+        """Make a model at one level."""
+        whole = MODELS[model](self.site, progress, level=level)
+        self._today = whole if (model, level) == ("today", 0) else self._today
+        scene = with_meshes_cut(whole)
+        self._textures |= scene.textures
+        self.drawn.setdefault(model, {})[level] = [drawn_of(node) for node in with_copies_cut(scene).nodes]
+        looks = first_surfaces(scene.textures) if level == LEVELS[-1] else plain_surfaces(scene.textures)
+        self._write(f"{model}.{level}.glb", (model, level), write_glb(scene, self._extras(model), looks))
+
+    def add_materials(self) -> None:
+        """Write the full textures of all that has been made."""
+        self.surfaces = full_surfaces(self._textures)
+        data = write_glb(Scene([], {}), self._extras("materials"), self.surfaces)
+        self._write(MATERIALS_FILE, ("materials", 0), data, packed=False)
+
+    def add_proxies(self) -> None:
+        """Write what hides and what carries a visitor: shapes without looks."""
+        for name, scene in (("occluders", occluders(self.site, self._today)), ("walkable", walkable(self.site))):
+            data = write_glb(scene, self._extras(name), plain_surfaces(scene.textures))
+            self._write(f"{name}.glb", (name, 0), data, packed=name not in FOR_ANY_READER)
+
+    def move(self, path: Path, folder: Path) -> BuiltFile:
+        """Move a finished file to where it belongs."""
+        target = folder / path.name
+        data = (path.with_suffix(PACKED) if path in self.to_pack else path).read_bytes()
+        _write(target, data)
+        model, level = self.files[path]
+        return BuiltFile(_relative(target, self.site.folder), len(data), sha256(data).hexdigest(), model, level)
+
+    def worst_costs(self) -> tuple[int, int]:
+        """Return the most draw calls and the most triangles of any view of the tour, in either model."""
+        terrain = build_terrain(self.site)
+        views = (self.site.default_view, *self.site.tour)
+        ground_z_m = {view.id: float(terrain.ground_z_m(view.e_m, view.n_m)) for view in views}
+        costs = [tour_costs(self.site, levels, ground_z_m) for levels in self.drawn.values()]
+        return max(calls for calls, _ in costs), max(triangles for _, triangles in costs)
+
+    def _extras(self, model: str) -> dict[str, Any]:
+        site = self.site
+        about = {"site": site.id, "model": model, "attribution": site.attribution, "licence": site.licence}
+        return about | PAGE_RULES | {"materials": MATERIALS_FILE}
+
+    def _write(self, name: str, of: tuple[str, int], data: bytes, packed: bool = True) -> None:
+        path = self.folder / name
+        path.write_bytes(data)
+        self.files[path] = of
+        self.to_pack += [path] if packed else []
 
 
 def _relative(path: Path, folder: Path) -> str:
@@ -116,13 +158,3 @@ def _write(path: Path, data: bytes) -> None:
         raise AssetError(
             f"{path} cannot be written ({exc.strerror}); free the space or change the permissions."
         ) from exc
-
-
-def _gpu_bytes(scene: Scene) -> int:
-    """Vertices and indices as they stand in the file, textures as four bytes a pixel with their smaller copies."""
-    meshes = [mesh for node in scene.nodes for mesh in node.meshes]
-    arrays = sum(
-        len(m.positions_m) * (12 + 12 + 8 + 4) + m.triangles.size * (2 if len(m.positions_m) <= 65535 else 4)
-        for m in meshes
-    )
-    return arrays + sum(texture.size * 16 // 9 for texture in scene.textures.values())

@@ -2,7 +2,8 @@
 
 AssetError
 ├── SiteError         a site folder that cannot be used; the command line prints it and exits 2
-└── GraphicsMissing   no off-screen OpenGL on this machine; the command line prints it and exits 3
+├── GraphicsMissing   no off-screen OpenGL on this machine; the command line prints it and exits 3
+└── PackerMissing     no Node.js, or not the packages that models are packed with; exits 3, too
 """
 
 
@@ -18,5 +19,11 @@ class SiteError(AssetError):
 
 class GraphicsMissing(AssetError):
     """The machine cannot draw off-screen."""
+
+    exit_code = 3
+
+
+class PackerMissing(AssetError):
+    """The machine cannot pack models."""
 
     exit_code = 3

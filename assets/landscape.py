@@ -9,6 +9,8 @@ from shapely.geometry import LinearRing, Polygon
 
 from assets import plants, rubble
 from assets.axes import Array, agora_from_site
+from assets.building import drawn_many, transforms
+from assets.scene import Instanced
 from assets.shape import Shape
 from assets.site import Site
 from assets.terrain import Terrain
@@ -77,23 +79,46 @@ def mountains(terrain: Terrain) -> Shape:
     return shape
 
 
-def grasses(planting: Planting) -> Shape:
-    """Return tufts of dry grass all over, thickest in patches, and small stones."""
-    shape, rng = Shape(), planting.rng
+THINNED = (1, 3, 12)
+"""By level: every how manieth tuft and stone is drawn."""
+
+
+def grasses(planting: Planting, level: int) -> list[Instanced]:
+    """Return tufts of dry grass all over, thickest in patches."""
+    rng = np.random.default_rng(11)
     u0, u1, v0, v1 = SQUARE_UV
-    inside = planting.places(26000, (u0, u1 + 6.0, v0 - 14.0, v1 + 18.0), 0.0, -1.0)
-    around = planting.places(5000, (u0 - 25.0, u1 + 30.0, v0 - 45.0, v1 + 70.0), 0.0, 0.3)
+    inside = planting.places(2500, (u0, u1 + 6.0, v0 - 14.0, v1 + 18.0), 0.0, -1.0)
+    around = planting.places(500, (u0 - 25.0, u1 + 30.0, v0 - 45.0, v1 + 70.0), 0.0, 0.3)
     everywhere = np.concatenate([inside, around])
     patches = noise(311, 256, 3, 60, 0.8)
     i, j = (np.floor(everywhere[:, k] * 2.0).astype(int) % 256 for k in (0, 1))
     everywhere = everywhere[patches[i, j] + rng.normal(0.0, 0.5, len(everywhere)) > -0.1]
-    plants.tufts(shape, rng, everywhere, rng.uniform(0.08, 0.34, len(everywhere)))
-    stones = planting.places(3600, (u0, u1 + 6.0, v0 - 14.0, v1), 0.0, 0.2)
-    sizes = np.exp(rng.normal(np.log(0.07), 0.55, (len(stones), 1))) * rng.uniform(
-        (0.9, 0.7, 0.35), (1.7, 1.2, 0.7), (len(stones), 3)
-    )
-    rubble.blocks(shape, rng, stones, sizes, rng.uniform(0.0, 6.0, len(stones)), 0.16)
-    return shape
+    return _strewn([plants.clump(rng) for _ in range(6)], everywhere, rng, (0.7, 1.35), THINNED[level])
+
+
+def stones(planting: Planting, level: int) -> list[Instanced]:
+    """Return small stones lying in the grass."""
+    rng = np.random.default_rng(12)
+    u0, u1, v0, v1 = SQUARE_UV
+    places = planting.places(3400, (u0, u1 + 6.0, v0 - 14.0, v1), 0.0, 0.2)
+    variants = []
+    for _ in range(6):
+        part = Shape()
+        size = rng.uniform((0.9, 0.7, 0.35), (1.7, 1.2, 0.7), (1, 3))
+        rubble.blocks(part, rng, np.zeros((1, 3)), size, np.zeros(1), 0.16)
+        variants.append(part)
+    return _strewn(variants, places, rng, 0.07 * np.exp(rng.normal(0.0, 0.55, len(places))), THINNED[level])
+
+
+def _strewn(
+    variants: list[Shape], places_m: Array, rng: np.random.Generator, scale: tuple[float, float] | Array, every: int
+) -> list[Instanced]:
+    """Return places (n, 3) shared out among variants, each turned about z and scaled: from and to, or (n,)."""
+    n = len(places_m)
+    size = rng.uniform(*scale, n) if isinstance(scale, tuple) else scale
+    T = transforms(places_m, rng.uniform(0.0, 2.0 * np.pi, n), np.repeat(size[:, None], 3, axis=1))[::every]
+    many = [drawn_many(variant, T[i :: len(variants)]) for i, variant in enumerate(variants)]
+    return [part for parts in many for part in parts]
 
 
 def stacked(planting: Planting) -> Shape:
@@ -121,16 +146,16 @@ def stacked(planting: Planting) -> Shape:
 
 
 Box: TypeAlias = tuple[float, float, float, float]
-_PLANTS: tuple[tuple[Callable[[np.random.Generator], Shape], float, tuple[tuple[int, Box], ...]], ...] = (
-    (plants.bush, 0.6, ((280, (-106.0, 60.0, -90.0, 4.0)), (60, (-108.0, 56.0, 3.0, 24.0)))),
+_PLANTS: tuple[tuple[Callable[[np.random.Generator, int], Shape], float, tuple[tuple[int, Box], ...]], ...] = (
+    (plants.bush, 0.6, ((210, (-106.0, 60.0, -90.0, 4.0)), (50, (-108.0, 56.0, 3.0, 24.0)))),
     (
         plants.slope_bush,
         0.6,
         (
-            (420, (-150.0, 110.0, 22.0, 130.0)),
-            (420, (-170.0, 130.0, -150.0, -74.0)),
-            (260, (-260.0, -120.0, -110.0, 110.0)),
-            (220, (58.0, 200.0, -90.0, 90.0)),
+            (330, (-150.0, 110.0, 22.0, 130.0)),
+            (330, (-170.0, 130.0, -150.0, -74.0)),
+            (200, (-260.0, -120.0, -110.0, 110.0)),
+            (160, (58.0, 200.0, -90.0, 90.0)),
         ),
     ),
     (
@@ -156,25 +181,34 @@ _PLANTS: tuple[tuple[Callable[[np.random.Generator], Shape], float, tuple[tuple[
 """What grows: its maker, how far it keeps from monuments, and how many in which boxes of (u, v)."""
 
 
-def planted(planting: Planting) -> Shape:
-    """Return shrubs and trees, none of them on a way; those on the slopes are the same few, turned and scaled."""
-    shape, rng = Shape(), planting.rng
-    for make, off_m, boxes in _PLANTS:
-        variants = [make(rng) for _ in range(5)]
-        for count, box in boxes:
-            places = planting.places(count, box, CLEAR_M + 1.5, off_m)
-            chosen = rng.integers(0, len(variants), len(places))
-            for i, variant in enumerate(variants):
-                mine = places[chosen == i]
-                scale = np.exp(rng.normal(0.0, 0.28, len(mine)))
-                shape.copies(variant, mine, rng.uniform(0.0, 6.28, len(mine)), scale)
-    far = [plants.far_bush(rng) for _ in range(5)]
+def planted(planting: Planting, level: int) -> list[Instanced]:
+    """Return shrubs and trees, none of them on a way; all are the same few, turned and scaled."""
+    found = [part for row in range(len(_PLANTS)) for part in _grown(planting, row, level)]
+    return found + _far_bushes(planting, level, 900)
+
+
+def wooded(planting: Planting, level: int) -> list[Instanced]:
+    """Return the trees and the maquis of the slopes alone: what may have grown around the city."""
+    coarser = max(level, 1)  # nobody comes near them
+    return _grown(planting, 2, coarser) + _grown(planting, 3, coarser) + _far_bushes(planting, coarser, 400)
+
+
+def _grown(planting: Planting, row: int, level: int) -> list[Instanced]:
+    """Plants of one row of the table."""
+    make, off_m, boxes = _PLANTS[row]
+    variants = [make(np.random.default_rng(100 * row + k), level) for k in range(4)]
+    rng = np.random.default_rng(30 + row)
+    places = np.concatenate([planting.places(count, box, CLEAR_M + 1.5, off_m) for count, box in boxes])
+    return _strewn(variants, places, rng, np.exp(rng.normal(0.0, 0.28, len(places))), 1)
+
+
+def _far_bushes(planting: Planting, level: int, count: int) -> list[Instanced]:
+    variants = [plants.far_bush(np.random.default_rng(40 + k), level) for k in range(4)]
+    found = []
     for i, place_box in enumerate(((-380.0, 300.0, 90.0, 330.0), (-380.0, 300.0, -320.0, -120.0))):
-        places = planting.places(1300, place_box, 0.0, 1.0)
-        for k, variant in enumerate(far):
-            mine = places[k::5]
-            shape.copies(variant, mine, rng.uniform(0.0, 6.28, len(mine)), rng.uniform(1.2, 3.4 + i, len(mine)))
-    return shape
+        places = planting.places(count, place_box, 0.0, 1.0)
+        found += _strewn(variants, places, np.random.default_rng(50 + i), (1.3, 3.6 + i), 1)
+    return found
 
 
 def path(terrain: Terrain, rng: np.random.Generator, way_en_m: Array, width_m: float) -> Shape:

@@ -28,6 +28,19 @@ class Pinhole:
     cy_px: float
 
 
+def finer(camera: Pinhole, times: int) -> Pinhole:
+    """Return the camera with `times` by `times` pixels for each one, which together cover the same."""
+    edge = (times - 1) / 2.0
+    return Pinhole(
+        times * camera.width_px,
+        times * camera.height_px,
+        times * camera.fx_px,
+        times * camera.fy_px,
+        times * camera.cx_px + edge,
+        times * camera.cy_px + edge,
+    )
+
+
 @dataclass(frozen=True)
 class Lens:
     """A camera with distortion, OpenCV's models and coefficients."""

@@ -1,38 +1,16 @@
-"""Parts that ancient buildings share: columns, steps, roofs, arches, vaults. Each adds itself to a shape."""
+"""Parts that ancient buildings share: rows of columns, steps, arches, vaults, doors. Each adds itself to a shape."""
 
 import numpy as np
 
 from assets.axes import Array
 from assets.shape import Shape
 
-COLUMN_SIDES = 12
-ROOF_SLOPE = np.tan(np.radians(17.5))
-EAVE_M = 0.5
-"""How far a roof stands out."""
 STEPS_OUT_M = 1.0
 """How far the steps of a temple may stand out from its stylobate."""
-
-
-def column(diameter_m: float, height_m: float, plain: bool = False, sides: int = COLUMN_SIDES) -> Shape:
-    """Return one column at (0, 0, 0): plinth, torus, tapering shaft, capital; `plain` is Doric, without plinth."""
-    radius = diameter_m / 2.0
-    base = 0.0 if plain else 0.35 * diameter_m
-    capital = 0.5 * diameter_m if plain else 0.8 * diameter_m
-    profile = [
-        (1.0, base),
-        (0.97, base + 0.35 * height_m),
-        (0.84, height_m - capital),
-        (1.28, height_m - 0.4 * capital),
-    ]
-    if not plain:
-        profile = [(1.3, 0.5 * base), (1.3, 0.8 * base), *profile]
-    shape = Shape()
-    revolved(shape, "marble", np.array(profile) * (radius, 1.0), sides)
-    half = radius * 1.36
-    shape.box("marble", (-half, -half, height_m - 0.4 * capital), (half, half, height_m))
-    if not plain:
-        shape.box("marble", (-half, -half, 0.0), (half, half, 0.5 * base))
-    return shape
+FOUNDATION_M = 1.6
+"""How far walls and floors go on below their level, so that no slope of the ground shows a gap."""
+Faces = tuple[float, float, float, float]
+"""x from and to, y from and to."""
 
 
 def revolved(shape: Shape, material: str, profile: Array, sides: int, tint: float = 1.0) -> None:
@@ -66,75 +44,6 @@ def steps(shape: Shape, x0: float, x1: float, y0: float, y1: float, rise_m: floa
         shape.box("marble", (x0 - out, y0 - out, -rise_m - 1.0), (x1 + out, y1 + out, top), 1.0 - 0.03 * (i % 2))
 
 
-def gable(
-    shape: Shape, x0: float, x1: float, y0: float, y1: float, eave_m: float, ridge_m: float, wall: str = "marble"
-) -> None:
-    """Add a tiled roof with its ridge along x, gables of `wall` at both ends and a cornice all around."""
-    middle, out = (y0 + y1) / 2.0, EAVE_M
-    ends = np.array(
-        [
-            [(x1, y0, eave_m), (x1, y1, eave_m), (x1, middle, ridge_m)],
-            [(x0, y1, eave_m), (x0, y0, eave_m), (x0, middle, ridge_m)],
-        ]
-    )
-    shape.polygons(wall, ends, 0.92)
-    drop = out * (ridge_m - eave_m) / (middle - y0)
-    low, a, b = eave_m - drop, x0 - out, x1 + out
-    south = [(a, y0 - out, low), (b, y0 - out, low), (b, middle, ridge_m), (a, middle, ridge_m)]
-    north = [(b, y1 + out, low), (a, y1 + out, low), (a, middle, ridge_m), (b, middle, ridge_m)]
-    shape.polygons("tiles", np.array([south, north]))
-    shape.polygons("wood", np.array([south[::-1], north[::-1]]) - (0.0, 0.0, 0.12), 0.7)
-    for x in (a, b):
-        rim = [
-            (x, y0 - out, low - 0.22),
-            (x, middle, ridge_m - 0.22),
-            (x, middle, ridge_m + 0.03),
-            (x, y0 - out, low + 0.08),
-        ]
-        other = [
-            (x, middle, ridge_m - 0.22),
-            (x, y1 + out, low - 0.22),
-            (x, y1 + out, low + 0.08),
-            (x, middle, ridge_m + 0.03),
-        ]
-        shape.polygons("marble", np.array([rim, other]))
-    for y in (y0 - out, y1 + out):
-        shape.box("marble", (a, y - 0.04, low - 0.3), (b, y + 0.04, low + 0.06))
-
-
-def lean_to(shape: Shape, x0: float, x1: float, y_low: float, y_high: float, z_low: float, z_high: float) -> None:
-    """Add a tiled roof that rises from y_low to y_high along all of x."""
-    corners = np.array([(x0, y_low, z_low), (x1, y_low, z_low), (x1, y_high, z_high), (x0, y_high, z_high)])
-    corners = corners if y_low < y_high else corners[::-1]
-    shape.polygons("tiles", corners)
-    shape.polygons("wood", corners[::-1] - (0.0, 0.0, 0.12), 0.7)
-    for x in (x0, x1):
-        shape.polygons(
-            "plaster", [(x, y_low, z_low - 0.4), (x, y_high, z_low - 0.4), (x, y_high, z_high), (x, y_low, z_low)], 0.9
-        )
-
-
-def beam(shape: Shape, x0: float, x1: float, y0: float, y1: float, z_m: float, height_m: float) -> None:
-    """Add an entablature with its underside: architrave, frieze a little back, cornice a little out."""
-    third = height_m / 3.0
-    shape.polygons("marble", [(x0, y0, z_m), (x0, y1, z_m), (x1, y1, z_m), (x1, y0, z_m)], 0.8)
-    shape.box("marble", (x0, y0, z_m), (x1, y1, z_m + third))
-    shape.box("marble", (x0 + 0.05, y0 + 0.05, z_m + third), (x1 - 0.05, y1 - 0.05, z_m + 2 * third), 0.88)
-    lip = 0.18
-    shape.box("marble", (x0 - lip, y0 - lip, z_m + 2 * third), (x1 + lip, y1 + lip, z_m + height_m))
-
-
-def frame(
-    shape: Shape, x0: float, x1: float, y0: float, y1: float, thick_m: float, z_m: float, height_m: float
-) -> None:
-    """Add an entablature on all four sides of a rectangle of centre lines."""
-    t = thick_m / 2.0
-    for y in (y0, y1):
-        beam(shape, x0 - t, x1 + t, y - t, y + t, z_m, height_m)
-    for x in (x0, x1):
-        beam(shape, x - t, x + t, y0 + t, y1 - t, z_m, height_m)
-
-
 def walls(
     shape: Shape, material: str, x0: float, x1: float, y0: float, y1: float, z0: float, z1: float, thick_m: float = 0.7
 ) -> None:
@@ -165,7 +74,7 @@ def arch(
     shape.polygons(material, front)
     shape.polygons(material, np.insert(outline[:, ::-1], 1, y1, axis=2))
     curve = np.stack([np.stack([x, np.full_like(x, y), z], -1) for y in (y0, y1)])
-    shape.surface(material, curve[::-1], 0.8)
+    shape.surface(material, curve, 0.8)
     left, right = centre_x - span_m / 2.0, centre_x + span_m / 2.0
     shape.polygons(material, [(left, y0, top_m), (right, y0, top_m), (right, y1, top_m), (left, y1, top_m)])
 
@@ -183,15 +92,122 @@ def vault(
     shape.polygons(end, points[::-1, 1])
 
 
-def door(shape: Shape, x_m: float, y_m: float, width_m: float, height_m: float, facing: float) -> None:
-    """Add a wooden door with a marble frame on a wall along x at `y_m`; `facing` is -1 for a wall that looks to -y, else 1."""
-    depth = 0.12 * facing
-    low, high = sorted((y_m, y_m + depth))
-    half = width_m / 2.0
-    for side in (-half - 0.15, half + 0.15):
-        shape.box("marble", (x_m + side - 0.15, low, 0.0), (x_m + side + 0.15, high, height_m))
-    shape.box(
-        "marble", (x_m - half - 0.4, low, height_m), (x_m + half + 0.4, high + 0.05 * (facing > 0), height_m + 0.4)
-    )
-    inner_low, inner_high = sorted((y_m, y_m + 0.04 * facing))
-    shape.box("wood", (x_m - half, inner_low, 0.0), (x_m + half, inner_high, height_m))
+def prism(shape: Shape, material: str, outline: Array, low_m: float, high_m: float) -> None:
+    """Add a solid with vertical sides over a convex outline (n, 2), counter-clockwise, with its top."""
+    shape.polygons(material, _sides(outline, low_m, high_m))
+    shape.polygons(material, np.column_stack([outline, np.full(len(outline), high_m)]))
+
+
+def ring_wall(shape: Shape, material: str, outline: Array, thick_m: float, low_m: float, high_m: float) -> None:
+    """Add a wall along the inside of a convex outline (n, 2), counter-clockwise, with its top."""
+    inner = offset(outline, -thick_m)
+    shape.polygons(material, _sides(outline, low_m, high_m))
+    shape.polygons(material, _sides(inner[::-1], low_m, high_m), 0.92)
+    top = np.full((len(outline), 1), high_m)
+    a, b = np.hstack([outline, top]), np.hstack([inner, top])
+    shape.polygons(material, np.stack([a, np.roll(a, -1, axis=0), np.roll(b, -1, axis=0), b], axis=1))
+
+
+def _sides(outline: Array, low_m: float, high_m: float) -> Array:
+    following = np.roll(outline, -1, axis=0)
+    low, high = np.full(len(outline), low_m), np.full(len(outline), high_m)
+    bottom = [np.column_stack([outline, low]), np.column_stack([following, low])]
+    top = [np.column_stack([following, high]), np.column_stack([outline, high])]
+    return np.stack([*bottom, *top], axis=1)
+
+
+def offset(outline: Array, out_m: float) -> Array:
+    """Return a convex outline (n, 2), counter-clockwise, with every edge moved out by `out_m`."""
+    edges = np.roll(outline, -1, axis=0) - outline
+    normals = np.stack([edges[:, 1], -edges[:, 0]], -1) / np.linalg.norm(edges, axis=1, keepdims=True)
+    before = np.roll(normals, 1, axis=0)
+    return np.asarray(outline + out_m * (normals + before) / (1.0 + (normals * before).sum(axis=1, keepdims=True)))
+
+
+def floor(shape: Shape, length_m: float, width_m: float) -> None:
+    """Add a paved floor at z = 0 on a foundation edged with marble."""
+    corners = np.array([(0.0, 0.0), (length_m, 0.0), (length_m, width_m), (0.0, width_m)])
+    shape.polygons("marble", _sides(corners, -FOUNDATION_M, 0.0), 0.96)
+    shape.polygons("paving", np.column_stack([corners, np.zeros(4)]))
+
+
+def pierced(
+    shape: Shape, material: str, x: tuple[float, float], y: tuple[float, float], z: tuple[float, float],
+    openings: list[tuple[float, float, float, float]],
+) -> None:  # fmt: skip
+    """Add a wall along x with openings of (middle, width, sill, head), from left to right."""
+    at = x[0]
+    for middle, width, sill, head in sorted(openings):
+        left, right = middle - width / 2.0, middle + width / 2.0
+        shape.box(material, (at, y[0], z[0]), (left, y[1], z[1]))
+        if sill > z[0]:
+            shape.box(material, (left, y[0], z[0]), (right, y[1], sill))
+        shape.box(material, (left, y[0], head), (right, y[1], z[1]))
+        shape.polygons(
+            material, [(left, y[1], head), (right, y[1], head), (right, y[0], head), (left, y[0], head)], 0.8
+        )
+        at = right
+    shape.box(material, (at, y[0], z[0]), (x[1], y[1], z[1]))
+
+
+def surround(
+    shape: Shape, x_m: float, y_m: float, size_m: tuple[float, float], facing: float, z_m: float = 0.0
+) -> None:
+    """Add the marble frame of a door of width and height on a wall along x at `y_m` that looks to -y (-1) or +y (1)."""
+    half, height = size_m[0] / 2.0, size_m[1]
+    low, high = sorted((y_m, y_m + 0.14 * facing))
+    for side in (-half - 0.16, half + 0.16):
+        shape.box("marble", (x_m + side - 0.16, low, z_m), (x_m + side + 0.16, high, z_m + height + 0.3))
+    shape.box("marble", (x_m - half, low, z_m + height), (x_m + half, high, z_m + height + 0.3), 0.96)
+    low, high = sorted((y_m, y_m + 0.3 * facing))
+    shape.slab("marble", (x_m - half - 0.45, low, z_m + height + 0.38), (x_m + half + 0.45, high, z_m + height + 0.56))
+
+
+def leaves(shape: Shape, x_m: float, y_m: float, size_m: tuple[float, float], facing: float, z_m: float = 0.0) -> None:
+    """Add the two panelled leaves of a closed door."""
+    half, height = size_m[0] / 2.0, size_m[1]
+    low, high = sorted((y_m, y_m + 0.03 * facing))
+    shape.box("wood", (x_m - half, low, z_m), (x_m + half, high, z_m + height))
+    low, high = sorted((y_m, y_m + 0.08 * facing))
+    for side in (-0.5, 0.5):
+        for share in (0.27, 0.74):
+            middle, tall = x_m + side * half, z_m + share * height
+            shape.box(
+                "wood",
+                (middle - 0.34 * half, low, tall - 0.19 * height),
+                (middle + 0.34 * half, high, tall + 0.19 * height),
+                0.8,
+            )
+
+
+def door(shape: Shape, x_m: float, y_m: float, size_m: tuple[float, float], facing: float, z_m: float = 0.0) -> None:
+    """Add a closed wooden door in its marble frame."""
+    surround(shape, x_m, y_m, size_m, facing, z_m)
+    leaves(shape, x_m, y_m, size_m, facing, z_m)
+
+
+def pilasters(shape: Shape, x: Array, y_m: float, z: tuple[float, float], width_m: float, out_m: float) -> None:
+    """Add flat pillars with foot and capital on a wall that looks to -y, along x at each of `x`."""
+    o = np.ones_like(x)
+    low, high, half = z[0], z[1], width_m / 2.0
+    for a, b, wide, out in (
+        (low, low + 0.35 * width_m, half * 1.2, out_m * 1.5),
+        (low + 0.35 * width_m, high - 0.55 * width_m, half, out_m),
+        (high - 0.55 * width_m, high - 0.2 * width_m, half * 1.12, out_m * 1.3),
+        (high - 0.2 * width_m, high, half * 1.3, out_m * 1.8),
+    ):
+        shape.boxes(
+            "marble",
+            np.stack([x - wide, o * (y_m - out), o * a], -1),
+            np.stack([x + wide, o * y_m, o * b], -1),
+        )
+
+
+def moulded(shape: Shape, material: str, faces: Faces, z: tuple[float, float], foot_m: float = 0.5) -> None:
+    """Add a block with a foot, a dado and a cornice."""
+    x0, x1, y0, y1 = faces
+    low, high = z
+    rows = ((low, low + 0.6 * foot_m, 0.15), (low + 0.6 * foot_m, low + foot_m, 0.07), (low + foot_m, high - 0.5, 0.0),
+            (high - 0.5, high - 0.25, 0.1), (high - 0.25, high, 0.25))  # fmt: skip
+    for a, b, out in rows:
+        shape.slab(material if out == 0.0 else "marble", (x0 - out, y0 - out, a), (x1 + out, y1 + out, b))

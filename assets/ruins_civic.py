@@ -1,11 +1,10 @@
 """Halls, temples and civic buildings as they stand today. Each adds itself to a shape in the monument's own axes."""
 
-from itertools import pairwise
-
 import numpy as np
 
-from assets import parts, rubble
-from assets.axes import Array
+from assets import orders, parts, rubble
+from assets.entablature import entablature
+from assets.monuments.bouleuterion import LOWER, half_ring, rows_profile, stairs_between
 from assets.shape import Shape, size_m, turned
 from assets.site import Monument
 
@@ -24,7 +23,7 @@ def basilica(monument: Monument, shape: Shape, rng: np.random.Generator) -> None
         rubble.stumps(shape, rng, np.delete(places, chosen, axis=0), 0.75, 2.2)
         for i in chosen:
             height = 6.6 if rng.random() < 0.7 else float(rng.uniform(3.2, 5.2))
-            column = parts.column(0.75, 6.6) if height == 6.6 else rubble.drum(0.75, height)
+            column = orders.column("bull", 0.75, 6.6, 1) if height == 6.6 else rubble.drum(0.75, height)
             shape.copies(column, places[i : i + 1])
     rubble.stumps(shape, rng, parts.row((0.6, 0.5), (length - 0.6, 0.5), 67), 0.6, 0.9)
     rubble.broken_wall(shape, rng, "ashlar", (0.0, width - 0.35), (length, width - 0.35), 0.7, (0.5, 2.9))
@@ -86,13 +85,13 @@ def bouleuterion(monument: Monument, shape: Shape, rng: np.random.Generator) -> 
     radius, y0 = size_m(monument)[0] / 2.0, 5.7
     angle = np.linspace(-0.06, np.pi + 0.06, 40)
     ring = np.stack([np.cos(angle), np.sin(angle)], -1)
-    seats = [(4.6 + 0.72 * i, 0.42 * i) for i in range(14)]
-    profile = [(r, z + rise) for r, z in seats for rise in (0.0, 0.42)]
-    _half_ring(shape, "marble", ring, radius, y0, profile, 0.9)
+    middle = (radius, y0)
+    half_ring(shape, "marble", ring, middle, [*rows_profile(LOWER, nosing=False), (14.4, LOWER[2] * LOWER[4])], 0.9)
+    stairs_between(shape, middle, LOWER, np.linspace(0.04, np.pi - 0.04, 6))
     upper = [
         (14.9 + 0.85 * i + float(rng.normal(0.0, 0.12)), 6.2 + 0.5 * i + float(rng.normal(0.0, 0.14))) for i in range(9)
     ]
-    _half_ring(shape, "rustic", ring, radius, y0, [(14.4, 5.9), *upper], 1.0)
+    half_ring(shape, "rustic", ring, middle, [(14.4, LOWER[2] * LOWER[4]), *upper], 1.0)
     places = np.column_stack([ring[2:-2] * 18.0 + (radius, y0), np.full(len(ring) - 4, 7.6)])
     rubble.scatter(shape, rng, places + rng.normal(0.0, (1.6, 1.6, 0.1), places.shape), 1.0)
     outer = ring * (radius - 0.6) + (radius, y0)
@@ -105,27 +104,6 @@ def bouleuterion(monument: Monument, shape: Shape, rng: np.random.Generator) -> 
         rubble.broken_wall(shape, rng, "ashlar", (x - 2.2, 1.4), (x + 2.2, 1.4), 1.0, (2.2, 3.6))
     shape.box("paving", (0.3, 0.3, -1.2), (2.0 * radius - 0.3, y0, 0.02), 0.9)
     shape.polygons("paving", np.column_stack([ring * 4.7 + (radius, y0), np.full(len(ring), 0.03)]), 0.95)
-
-
-def _half_ring(
-    shape: Shape,
-    material: str,
-    ring: Array,
-    centre_x: float,
-    centre_y: float,
-    profile: list[tuple[float, float]],
-    tint: float,
-) -> None:
-    """Add steps around a half circle, closed at both ends: flat strips between neighbours of `profile` (radius, height)."""
-    for (r0, z0), (r1, z1) in pairwise(profile):
-        inner, outer = (
-            np.column_stack([ring * r + (centre_x, centre_y), np.full(len(ring), z)]) for r, z in ((r0, z0), (r1, z1))
-        )
-        shape.polygons(material, np.stack([inner[:-1], outer[:-1], outer[1:], inner[1:]], axis=1), tint)
-        if r1 > r0:
-            for end, order in ((0, 1), (-1, -1)):
-                low = np.stack([inner[end], outer[end]]) * (1.0, 1.0, 0.0)
-                shape.polygons(material, np.stack([*low, outer[end], inner[end]])[::order], tint)
 
 
 def court(monument: Monument, shape: Shape, rng: np.random.Generator) -> None:
@@ -145,8 +123,8 @@ def prytaneion(monument: Monument, shape: Shape, rng: np.random.Generator) -> No
     height, diameter = monument.measure("column_height_m"), monument.measure("column_diameter_m")
     x = length * 0.5
     for at in (x, x + 3.1):
-        shape.copies(parts.column(diameter, height, plain=True), np.array([[at, 20.1, 0.0]]))
-    parts.beam(shape, x - 0.7, x + 3.8, 19.6, 20.6, height, 1.3)
+        shape.copies(orders.column("doric", diameter, height, 1), np.array([[at, 20.1, 0.0]]))
+    entablature(shape, "doric", (x - 0.7, x + 3.8, 19.6, 20.6), height, 1.3)
     rubble.stumps(shape, rng, parts.row((3.6, 20.1), (length - 3.6, 20.1), 6), 1.1, 1.6)
     for corner in ((10.5, 31.0), (19.8, 31.0), (10.5, 40.0), (19.8, 40.0)):
         for off in (0.0, 0.4):

@@ -2,6 +2,7 @@
 
 _SKY = """
 uniform vec3 sun;
+uniform float brightness;
 const vec3 HORIZON = vec3(0.95, 1.08, 1.2);
 float hash(vec2 p) { return fract(sin(dot(p, vec2(127.1, 311.7))) * 43758.5453); }
 float wisps(vec2 p) {
@@ -15,7 +16,7 @@ vec3 sky(vec3 ray) {
     return blue + vec3(0.20, 0.17, 0.12) * pow(max(dot(ray, sun), 0.0), 12.0);
 }
 vec3 developed(vec3 light) {
-    light *= 0.62;
+    light *= 0.36 * brightness;
     vec3 c = light * (2.51 * light + 0.03) / (light * (2.43 * light + 0.59) + 0.14);
     return sqrt(clamp(c, 0.0, 1.0));
 }

@@ -87,11 +87,15 @@ class Shape:
     """What has been built so far. `tint` darkens or colours a part: one number or (red, green, blue), 1 is the material itself."""
 
     batches: list[_Batch] = field(default_factory=list)
+    split_m: float = 0.0
+    """Four-sided polygons with longer edges are laid as grids, so that light baked into corners has corners to lie in; 0: never."""
 
     def polygons(self, material: str, corners: ArrayLike, tint: ArrayLike = 1.0) -> None:
         """Add flat convex polygons, (n, 3) or (k, n, 3), counter-clockwise from outside; `tint` may have one row per polygon."""
         points = np.asarray(corners, dtype=np.float64)
         points = points[None] if points.ndim == 2 else points
+        if self.split_m > 0.0 and points.shape[1] == 4:
+            points, tint = _split(points, np.asarray(tint, dtype=np.float64), self.split_m)
         k, n, _ = points.shape
         normal = unit(np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]))
         normals = np.repeat(normal[:, None], n, axis=1)
@@ -116,9 +120,22 @@ class Shape:
         uvs = p[..., :2] * (1.0, -1.0) if from_above else np.stack([along_a, along_b], -1)
         self._add(material, p.reshape(-1, 3), normals.reshape(-1, 3), uvs, tint, cells(a, b))
 
+    def panels(self, material: str, corners: ArrayLike, uvs_m: ArrayLike, tint: ArrayLike = 1.0) -> None:
+        """Add flat four-sided polygons (k, 4, 3) with the texture laid as told, (k, 4, 2) in metres; `tint` may have k rows."""
+        points, uvs = np.asarray(corners, dtype=np.float64), np.asarray(uvs_m, dtype=np.float64)
+        normal = unit(np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]))
+        fan = np.array([(0, 1, 2), (0, 2, 3)])
+        triangles = (fan[None] + np.arange(len(points))[:, None, None] * 4).reshape(-1, 3)
+        tints = np.asarray(tint, dtype=np.float64)
+        tints = np.repeat(tints, 4, axis=0) if tints.ndim == 2 else tints
+        self._add(material, points.reshape(-1, 3), np.repeat(normal, 4, axis=0), uvs, tints, triangles)
+
     def leaves(self, material: str, corners: Array, normals: Array, tint: Array) -> None:
-        """Add loose triangles (k, 3, 3), each lit as if it faced its normal (k, 3), with a tint (k, 3)."""
+        """Add loose triangles (k, 3, 3), each lit as if it faced its normal (k, 3) and turned to that side, with a tint (k, 3)."""
         k = len(corners)
+        facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        away = np.einsum("ki,ki->k", facing, normals) < 0.0
+        corners = np.where(away[:, None, None], corners[:, ::-1], corners)
         uvs = corners[..., :2] + corners[..., 2:] * (0.7, 0.5)
         flat = (np.repeat(normals, 3, axis=0), uvs, np.repeat(tint, 3, axis=0), np.arange(3 * k).reshape(k, 3))
         self._add(material, corners.reshape(-1, 3), *flat)
@@ -126,6 +143,13 @@ class Shape:
     def box(self, material: str, low: Sequence[float], high: Sequence[float], tint: ArrayLike = 1.0) -> None:
         """Add an upright box without its underside."""
         self.boxes(material, np.array([low]), np.array([high]), tint)
+
+    def slab(self, material: str, low: Sequence[float], high: Sequence[float], tint: ArrayLike = 1.0) -> None:
+        """Add an upright box with its underside, for what is seen from below."""
+        self.box(material, low, high, tint)
+        (x0, y0, z), (x1, y1, _) = low, high
+        shade = np.asarray(tint, dtype=np.float64) * 0.88
+        self.polygons(material, [(x0, y1, z), (x1, y1, z), (x1, y0, z), (x0, y0, z)], shade)
 
     def boxes(self, material: str, low: Array, high: Array, tint: ArrayLike = 1.0) -> None:
         """Add upright boxes from (k, 3) lower to (k, 3) upper corners, without undersides; `tint` may have one row per box."""
@@ -178,6 +202,23 @@ def _joined(material: str, batches: list[_Batch], place: Place) -> Mesh:
         np.clip(np.concatenate([b.tint for b in batches]) * 255.0, 0.0, 255.0).round().astype(np.uint8),
         np.concatenate([b.triangles + s for b, s in zip(batches, starts, strict=True)]).astype(np.uint32),
     )
+
+
+def _split(quads: Array, tint: Array, longest_m: float) -> tuple[Array, Array]:
+    """Cut (k, 4, 3) four-sided polygons into grids with edges of at most `longest_m`; `tint` follows where it has k rows."""
+    edges = np.linalg.norm(np.roll(quads, -1, axis=1) - quads, axis=2)
+    counts = np.ceil(np.stack([edges[:, ::2].max(axis=1), edges[:, 1::2].max(axis=1)], -1) / longest_m - 1e-9)
+    counts = np.maximum(counts.astype(int), 1)
+    pieces, tints = [], []
+    for a, b in np.unique(counts, axis=0):
+        chosen = (counts == (a, b)).all(axis=1)
+        p = quads[chosen][:, :, None, None]
+        s, t = np.linspace(0.0, 1.0, a + 1)[None, :, None, None], np.linspace(0.0, 1.0, b + 1)[None, None, :, None]
+        grid = (1 - s) * (1 - t) * p[:, 0] + s * (1 - t) * p[:, 1] + s * t * p[:, 2] + (1 - s) * t * p[:, 3]
+        cut = np.stack([grid[:, :-1, :-1], grid[:, 1:, :-1], grid[:, 1:, 1:], grid[:, :-1, 1:]], axis=3)
+        pieces.append(cut.reshape(-1, 4, 3))
+        tints.append(np.repeat(tint[chosen], a * b, axis=0) if tint.ndim == 2 else tint)
+    return np.concatenate(pieces), np.concatenate(tints) if tint.ndim == 2 else tint
 
 
 _BOX = np.array(

@@ -33,17 +33,19 @@ def _painted(rgb: Array) -> Texture:
     return np.ascontiguousarray(np.clip(rgb, 0.0, 255.0).round().astype(np.uint8)[..., ::-1])
 
 
-def _courses(seed: int, rows: int, columns: int, joint_px: float, spread: float) -> tuple[Array, Array]:
+def courses(
+    seed: int, rows: int, columns: int, joint_px: float, spread: float, size: int = SIZE
+) -> tuple[Array, Array]:
     """A wall of blocks: a tone per block (deviation `spread`), and 0 in the joints rising to 1 inside."""
     rng = np.random.default_rng(seed)
-    y, x = np.mgrid[0:SIZE, 0:SIZE].astype(np.float64)
-    row = (y * rows / SIZE).astype(int)
-    shifted = (x * columns / SIZE + (row % 2) * 0.5 + rng.uniform(-0.12, 0.12, rows)[row]) % columns
+    y, x = np.mgrid[0:size, 0:size].astype(np.float64)
+    row = (y * rows / size).astype(int)
+    shifted = (x * columns / size + (row % 2) * 0.5 + rng.uniform(-0.12, 0.12, rows)[row]) % columns
     column = shifted.astype(int)
     tone = rng.normal(0.0, spread, (rows, columns))[row, column]
-    inside_x = np.minimum(shifted % 1.0, 1.0 - shifted % 1.0) * SIZE / columns
-    down = y * rows / SIZE % 1.0
-    inside_y = np.minimum(down, 1.0 - down) * SIZE / rows
+    inside_x = np.minimum(shifted % 1.0, 1.0 - shifted % 1.0) * size / columns
+    down = y * rows / size % 1.0
+    inside_y = np.minimum(down, 1.0 - down) * size / rows
     return tone, np.clip(np.minimum(inside_x, inside_y) / joint_px, 0.0, 1.0)
 
 
@@ -55,16 +57,64 @@ def marble() -> Texture:
     return _painted(rgb * (1.0 - 0.09 * veins)[..., None] + 3.0 * noise(3, SIZE, 60, 250, 0.3)[..., None])
 
 
+def marble_grey() -> Texture:
+    """Blue-grey marble, banded."""
+    veins = np.clip(1.0 - 4.0 * np.abs(noise(5, SIZE, 2, 40, 1.5)), 0.0, 1.0)
+    rgb = _mix((146, 151, 156), (182, 186, 188), 0.5 + 0.24 * noise(6, SIZE, 2, 14, 1.2))
+    return _painted(rgb * (1.0 + 0.07 * veins)[..., None] + 3.0 * noise(7, SIZE, 60, 250, 0.3)[..., None])
+
+
+def granite() -> Texture:
+    """Red granite, polished: rose feldspar, grey quartz, dark mica."""
+    grains = noise(8, SIZE, 40, 200, 0.2)
+    rgb = _mix((150, 92, 84), (196, 146, 132), 0.5 + 0.3 * grains)
+    dark = np.clip((noise(9, SIZE, 60, 250, 0.1) - 1.1) * 2.0, 0.0, 0.8)[..., None]
+    return _painted(rgb * (1.0 - dark) + np.array((70, 62, 62)) * dark)
+
+
+def bronze() -> Texture:
+    """Bronze with a patina in the hollows."""
+    patina = np.clip(0.4 + 0.35 * noise(10, SIZE, 3, 60, 1.0), 0.0, 1.0)[..., None]
+    return _painted(_mix((122, 88, 52), (168, 128, 80), 0.5 + 0.3 * noise(14, SIZE, 4, 120, 0.6)) * (1.0 - 0.5 * patina)
+                    + np.array((78, 104, 92)) * 0.5 * patina)  # fmt: skip
+
+
+def panel_edges() -> Array:
+    """Return the painted wall's mouldings (n, n): 1 on the frames of its panels, 0 between."""
+    y, x = np.mgrid[0:SIZE, 0:SIZE] / SIZE
+    left, top = np.minimum(x * 2.0 % 1.0, 1.0 - x * 2.0 % 1.0), np.minimum(np.abs(y - 0.08), np.abs(y - 0.62))
+    inside = (y > 0.08) & (y < 0.62)
+    upright = np.exp(-(((left - 0.07) / 0.014) ** 2)) * inside
+    level = np.exp(-((top / 0.009) ** 2)) * (left > 0.06)
+    bands = np.exp(-(((y - 0.70) / 0.008) ** 2)) + np.exp(-(((y - 0.03) / 0.008) ** 2))
+    return np.asarray(np.clip(upright + level + bands, 0.0, 1.0))
+
+
+def painted() -> Texture:
+    """Plaster painted in panels: red fields between pale frames, a yellow band, a dark foot."""
+    y, x = np.mgrid[0:SIZE, 0:SIZE] / SIZE
+    left = np.minimum(x * 2.0 % 1.0, 1.0 - x * 2.0 % 1.0)
+    field = ((y > 0.08) & (y < 0.62) & (left > 0.07))[..., None]
+    foot = (y > 0.70)[..., None]
+    wear = noise(33, SIZE, 2, 60, 0.9)[..., None]
+    rgb = np.where(field, (158, 62, 44), (206, 168, 96)) * (1.0 + 0.05 * wear)
+    rgb = np.where(foot, np.array((74, 66, 62)) * (1.0 + 0.08 * wear), rgb)
+    edge = panel_edges()[..., None]
+    bare = np.clip(wear - 1.9, 0.0, 1.0)
+    rgb = rgb * (1.0 - edge) + np.array((226, 214, 190)) * edge
+    return _painted(rgb * (1.0 - bare) + np.array((214, 200, 172)) * bare)
+
+
 def ashlar() -> Texture:
     """Marble blocks in courses of half a metre."""
-    tone, joint = _courses(11, 8, 4, 2.5, 1.0)
+    tone, joint = courses(11, 8, 4, 2.5, 1.0)
     rgb = _mix((196, 186, 168), (232, 224, 208), 0.5 + 0.2 * tone + 0.2 * noise(12, SIZE, 2, 60, 1.0))
     return _painted(rgb * (0.72 + 0.28 * joint)[..., None] + 4.0 * noise(13, SIZE, 40, 250, 0.3)[..., None])
 
 
 def rustic() -> Texture:
     """Bossed blocks, as in terrace walls."""
-    tone, joint = _courses(21, 7, 4, 9.0, 1.0)
+    tone, joint = courses(21, 7, 4, 9.0, 1.0)
     rough = noise(22, SIZE, 6, 120, 0.9)
     rgb = _mix((150, 143, 130), (208, 199, 182), 0.5 + 0.22 * tone + 0.22 * rough)
     return _painted(rgb * (0.62 + 0.38 * joint)[..., None])
@@ -72,25 +122,41 @@ def rustic() -> Texture:
 
 def plaster() -> Texture:
     """Lime plaster, weathered."""
-    rgb = _mix((206, 190, 162), (232, 222, 200), 0.5 + 0.25 * noise(31, SIZE, 1, 30, 1.1))
+    rgb = _mix((216, 203, 178), (234, 225, 206), 0.5 + 0.22 * noise(31, SIZE, 1, 30, 1.1))
     return _painted(rgb + 4.0 * noise(32, SIZE, 30, 250, 0.3)[..., None])
 
 
+PAVING_PX, PAVING_GRID = 1024, (8, 6)
+"""Rows and columns of slabs in one repeat."""
+
+
 def paving() -> Texture:
-    """Marble slabs of unequal tone."""
-    tone, joint = _courses(41, 6, 4, 2.5, 1.0)
-    rgb = _mix((168, 158, 142), (214, 205, 188), 0.5 + 0.24 * tone + 0.24 * noise(42, SIZE, 2, 80, 0.9))
-    return _painted(rgb * (0.62 + 0.38 * joint)[..., None] + 5.0 * noise(43, SIZE, 50, 250, 0.2)[..., None])
+    """Marble slabs of unequal tone, their middles polished by feet."""
+    tone, joint = courses(41, *PAVING_GRID, 3.0, 1.0, PAVING_PX)
+    cloud = noise(42, PAVING_PX, 2, 80, 0.9)
+    veins = np.clip(1.0 - 5.0 * np.abs(noise(44, PAVING_PX, 3, 60, 1.4)), 0.0, 1.0)[..., None]
+    grey = np.clip(0.5 + 0.55 * np.roll(tone, 1, axis=1), 0.0, 1.0)[..., None]
+    rgb = _mix((164, 156, 142), (214, 206, 190), 0.5 + 0.26 * tone + 0.2 * cloud)
+    rgb = rgb * (1.0 - 0.22 * grey) + np.array((150, 158, 166)) * 0.22 * grey
+    fine = noise(43, PAVING_PX, 60, 500, 0.2)[..., None]
+    return _painted(rgb * (0.58 + 0.42 * joint)[..., None] * (1.0 - 0.06 * veins) + 5.0 * fine)
+
+
+TILE_COVERS, TILE_ROWS = 8, 6
+"""In one repeat of the roof: cover tiles across, rows of pan tiles down."""
 
 
 def tiles() -> Texture:
     """Terracotta pan tiles with round cover tiles; down the roof is down the picture."""
     y, x = np.mgrid[0:SIZE, 0:SIZE].astype(np.float64)
-    across, down = x * 8 / SIZE, y * 6 / SIZE
-    tone = np.random.default_rng(51).normal(0.0, 1.0, (6, 8))[down.astype(int), across.astype(int)]
+    across, down = x * TILE_COVERS / SIZE, y * TILE_ROWS / SIZE
+    column = np.floor(across + 0.5).astype(int) % TILE_COVERS
+    tone = np.random.default_rng(51).normal(0.0, 1.0, (TILE_ROWS, TILE_COVERS))[down.astype(int), column]
     cover = 0.5 + 0.5 * np.cos(2.0 * np.pi * across)
-    shade = (0.66 + 0.34 * cover) * np.clip(0.55 + 3.0 * (1.0 - down % 1.0), 0.0, 1.0)
-    rgb = _mix((150, 84, 54), (206, 132, 92), 0.5 + 0.22 * tone + 0.15 * noise(52, SIZE, 4, 80, 0.9))
+    shade = (0.7 + 0.3 * cover**0.7) * np.clip(0.6 + 4.0 * (1.0 - down % 1.0), 0.0, 1.0)
+    rgb = _mix((138, 82, 56), (196, 128, 92), 0.5 + 0.24 * tone + 0.18 * noise(52, SIZE, 4, 80, 0.9))
+    lichen = np.clip(noise(53, SIZE, 5, 60, 0.8) - 1.0, 0.0, 1.0)[..., None] * 0.45
+    rgb = rgb * (1.0 - lichen) + np.array((150, 140, 112)) * lichen
     return _painted(rgb * shade[..., None])
 
 
@@ -141,10 +207,26 @@ def straw() -> Texture:
     return _painted(_mix((170, 152, 112), (222, 206, 166), 0.5 + 0.3 * noise(105, 128, 2, 50, 0.4)))
 
 
+def grain() -> Array:
+    """Return the grain of boards (n, n): long along the picture's rows."""
+    spectrum = np.fft.rfft2(np.random.default_rng(111).standard_normal((SIZE, SIZE)))
+    along, across = np.fft.rfftfreq(SIZE)[None] * SIZE, np.fft.fftfreq(SIZE)[:, None] * SIZE
+    spectrum *= np.exp(-((along / 6.0) ** 2)) * np.maximum(np.abs(across), 4.0) ** -0.5 * (np.abs(across) < 160)
+    field: Array = np.fft.irfft2(spectrum, s=(SIZE, SIZE))
+    return np.asarray(field / field.std())
+
+
+def board_gaps() -> Array:
+    """Return 0 in the gaps between boards, rising to 1 on them (n, n)."""
+    down = np.arange(SIZE) * 8.0 / SIZE % 1.0
+    return np.repeat(np.clip(np.minimum(down, 1.0 - down) * 20.0, 0.0, 1.0)[:, None], SIZE, axis=1)
+
+
 def wood() -> Texture:
-    """Oak beams and doors."""
-    grain = noise(111, SIZE, 1, 200, 0.6)
-    return _painted(_mix((78, 54, 34), (134, 98, 64), 0.5 + 0.3 * np.roll(grain, 3, axis=0)))
+    """Boards of oak."""
+    tone = np.repeat(np.random.default_rng(112).normal(0.0, 1.0, 8), SIZE // 8)[:, None]
+    rgb = _mix((84, 58, 36), (142, 104, 68), 0.5 + 0.2 * grain() + 0.12 * tone)
+    return _painted(rgb * (0.55 + 0.45 * board_gaps())[..., None])
 
 
 def water() -> Texture:

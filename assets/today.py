@@ -1,6 +1,7 @@
 """The site as it stands today: what the simulated camera sees."""
 
 from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from zlib import crc32
 
 import numpy as np
@@ -8,12 +9,14 @@ from numpy.typing import NDArray
 
 from assets import landscape, ruins_civic, ruins_works
 from assets.axes import Array
+from assets.brought_node import brought_node
+from assets.building import Building
 from assets.errors import SiteError
-from assets.gltf import Node, Scene
+from assets.facts import monument_facts
 from assets.ground import paving_mesh, terrain_meshes
 from assets.materials import MATERIALS
-from assets.monuments import monument_facts
-from assets.roman import PAVING
+from assets.records import MODEL, PAVING
+from assets.scene import Node, Scene
 from assets.shape import Place, Shape
 from assets.site import Monument, Site
 from assets.terrain import Terrain, build_terrain
@@ -45,55 +48,68 @@ RUINS: Mapping[str, Ruin] = {
 }
 SITE = Place.at(0.0, 0.0, 0.0)
 PATH_WIDTH_M = 1.8
+LAND = {"role": "ground", "evidence": "hypothetical", "source": "design"}
+"""What the land carries: it is like the place, not a survey of it."""
 
 
-def build_today(site: Site, progress: Callable[[float], None]) -> Scene:
+def build_today(
+    site: Site, progress: Callable[[float], None], level: int = 0, variants: Mapping[str, str] = MappingProxyType({})
+) -> Scene:
     """Return the ruins, the ground and what grows there.
 
     Args:
         site: Its facts.
         progress: Called with the share that is done.
+        level: 0 is the finest, 1 the middle, 2 the first paint.
+        variants: Of a monument's id, the one rival reconstruction to build; all of them where it is not named.
 
     Raises:
         SiteError: A monument lacks a figure, or is of a kind that nothing builds.
     """
     terrain = build_terrain(site)
-    nodes = [Node("ground", terrain_meshes(terrain, _ground, _tint), {"role": "ground"})]
-    nodes += [_ruin(m, terrain) for m in site.shown_in("today") if m.id != "square"]
-    progress(0.4)
+    nodes = [Node("ground", terrain_meshes(terrain, _ground, _tint), LAND)]
+    for monument in site.shown_in("today"):
+        nodes += [] if monument.id == "square" else _ruin(monument, terrain, level)
+    progress(0.5)
+    nodes += _surroundings(site, terrain, level)
+    progress(0.8)
+    used = dict.fromkeys(name for node in nodes for name in node.materials)
+    scene = Scene(nodes, {name: MATERIALS[name].paint() for name in used})
+    progress(1.0)
+    return scene
+
+
+def _surroundings(site: Site, terrain: Terrain, level: int) -> list[Node]:
     planting = landscape.Planting(site, terrain, np.random.default_rng(1))
     paths = Shape()
     for way in site.ways:
         closed = np.array([*way, way[0]])
         part = landscape.path(terrain, np.random.default_rng(2), closed, PATH_WIDTH_M)
         paths.copies(part, np.zeros((1, 3)))
-    around = {
-        "mountains": (landscape.mountains(terrain), "ground"),
-        "paths": (paths, "ground"),
-        "grass": (landscape.grasses(planting), "ground"),
-        "stacked_blocks": (landscape.stacked(planting), "building"),
-        "plants": (landscape.planted(planting), "building"),
-    }
-    nodes += [Node(name, shape.meshes(SITE), {"role": role}) for name, (shape, role) in around.items()]
-    progress(0.8)
-    used = dict.fromkeys(mesh.material for node in nodes for mesh in node.meshes)
-    scene = Scene(nodes, {name: MATERIALS[name].paint() for name in used})
-    progress(1.0)
-    return scene
+    return [
+        Node("mountains", landscape.mountains(terrain).meshes(SITE), LAND | {"role": "backdrop"}),
+        Node("paths", paths.meshes(SITE), LAND),
+        Node("stacked_blocks", landscape.stacked(planting).meshes(SITE), LAND | {"role": "building"}),
+        Node("stones", [], LAND, landscape.stones(planting, level)),
+        Node("grass", [], LAND | {"role": "plant"}, landscape.grasses(planting, level)),
+        Node("plants", [], LAND | {"role": "plant"}, landscape.planted(planting, level)),
+    ]
 
 
-def _ruin(monument: Monument, terrain: Terrain) -> Node:
+def _ruin(monument: Monument, terrain: Terrain, level: int) -> list[Node]:
     if monument.kind == PAVING:
-        return Node(
-            monument.id, [paving_mesh(terrain, monument, "paving", 0.8)], monument_facts(monument) | {"role": "ground"}
-        )
+        told = monument_facts(monument) | {"role": "ground", "monument": monument.id}
+        return [Node(monument.id, [paving_mesh(terrain, monument, "paving", 0.8)], told)]
+    if monument.kind == MODEL:
+        return [brought_node(monument)]
     if monument.kind not in RUINS:
         raise SiteError(
             f"monument '{monument.id}' is of kind '{monument.kind}', which nothing builds; use one of {', '.join(RUINS)}."
         )
-    shape = Shape()
-    RUINS[monument.kind](monument, shape, np.random.default_rng(crc32(monument.id.encode())))
-    return Node(monument.id, shape.meshes(Place.of(monument)), monument_facts(monument) | {"role": "building"})
+    building = Building(monument, level)
+    building.face(0)
+    RUINS[monument.kind](monument, building.element(), np.random.default_rng(crc32(monument.id.encode())))
+    return building.nodes(terrain)
 
 
 def _ground(points_m: Array) -> NDArray[np.str_]:

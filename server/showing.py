@@ -31,7 +31,7 @@ class Showing:
         """
         models = site.folder / "built"
         terrain = build_terrain(site)
-        self._console = Console(model_path=models / "roman.glb")
+        self._console = Console(model_path=models / "occluders.glb")
         self._replay = Replay(
             log,
             settings,

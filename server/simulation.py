@@ -10,17 +10,22 @@ from typing import Literal
 import cv2
 import numpy as np
 
+from assets import exposure
+from assets.exposure import Exposure
+from assets.lens import Pinhole
 from assets.render import Renderer
+from assets.scene import Scene, expanded
 from tracker.errors import InputError
 from tracker.gait import Ground
 from tracker.log_writer import LogWriter
-from tracker.measurements import Frame, Image, Measurement
+from tracker.measurements import Frame, Image, Matrix, Measurement
 from tracker.pictures import ArrayPicture
+from tracker.rig import CameraModel
 from tracker.simulate import START_NS, Walk, WalkSettings, default_rig, simulate
 
 Progress = Callable[[float], None]
-#: Standard deviation of the camera's noise, levels of 255.
-PICTURE_NOISE = 2.0
+#: So many moments of one exposure smooth its picture's edges by themselves.
+COARSE_MOMENTS = 3
 
 
 def write_walk(
@@ -28,7 +33,7 @@ def write_walk(
     settings: WalkSettings,
     *,
     ground_z_m: Ground,
-    model: Path | None,
+    scene: Scene | None,
     video: Literal["jpeg", "h264"],
     progress: Progress,
 ) -> int:
@@ -40,7 +45,7 @@ def write_walk(
         path: The log; written over where it exists.
         settings: The walk.
         ground_z_m: What the visitor walks on.
-        model: A GLB of what the camera sees; None for a walk without camera.
+        scene: What the camera sees; None for a walk without camera.
         video: How pictures are stored.
         progress: Called with the share that is done.
 
@@ -48,12 +53,13 @@ def write_walk(
         InputError: The log cannot be written.
         GraphicsMissing: There is no off-screen OpenGL.
     """
+    scene = None if scene is None else expanded(scene)
     rig = default_rig()
     walk = Walk(settings, rig, ground_z_m)
-    if model is None:
+    if scene is None:
         rig = type(rig)(rig.T_body_imu, rig.T_body_gps, rig.T_body_cam, None)
     kept = path.with_name(path.name + ".frames")
-    pictures = _pictures(walk, model, kept / _key(settings, model), progress) if model else iter(())
+    pictures = _pictures(walk, scene, kept / _key(settings, scene), progress) if scene else iter(())
     part = path.with_name(path.name + ".part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -71,32 +77,81 @@ def write_walk(
     return path.stat().st_size
 
 
-def _key(settings: WalkSettings, model: Path) -> str:
+def _key(settings: WalkSettings, scene: Scene) -> str:
     """Return what the pictures depend on, as a folder's name: another walk or world must not go on with these."""
-    return sha256(repr(settings).encode() + sha256(model.read_bytes()).digest()).hexdigest()[:16]
+    content = sha256(repr(settings).encode())
+    for mesh in (mesh for node in scene.nodes for mesh in node.meshes):
+        content.update(mesh.material.encode())
+        for array in (mesh.positions_m, mesh.normals, mesh.uvs, mesh.colours, mesh.triangles):
+            content.update(array.tobytes())
+    for name, texture in scene.textures.items():
+        content.update(name.encode() + texture.tobytes())
+    return content.hexdigest()[:16]
 
 
-def _pictures(walk: Walk, model: Path, kept: Path, progress: Progress) -> Iterator[Frame]:
+def _pictures(walk: Walk, scene: Scene, kept: Path, progress: Progress) -> Iterator[Frame]:
+    """Yield what the camera takes. Pictures are kept as the lens throws them; exposure and noise follow from them again."""
     camera = walk.rig.camera
     if camera is None:
         raise ValueError("a rig with a camera")
     kept.mkdir(parents=True, exist_ok=True)
-    times = walk.frame_times()
-    lens = (camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px, camera.distortion_model, camera.distortion)
-    with Renderer(model, camera.width_px, camera.height_px) as renderer:
+    times, period_s = walk.frame_times(), 1.0 / walk.settings.camera_hz
+    exposed, falloff = Exposure(), exposure.vignette(_pinhole(camera))
+    with Renderer(scene, camera.width_px, camera.height_px) as renderer:
+        eye = _Eye(renderer, walk, camera)
         for frame_id, (t_ns, t_recv_ns) in enumerate(times):
             file = kept / f"{frame_id:06d}.png"
             bgr = cv2.imread(str(file)) if file.is_file() else None
             if bgr is None:
-                bgr = renderer.render(walk.T_site_cam(t_ns), *lens)
+                bgr = eye.taken(t_ns, exposed)
                 part = file.with_suffix(".part.png")
                 cv2.imwrite(str(part), bgr)
                 part.replace(file)
-            yield Frame(t_ns, t_recv_ns, frame_id, ArrayPicture(_noisy(np.asarray(bgr, np.uint8), walk, frame_id)))
+            light = np.asarray(bgr, np.uint8)
+            rng = np.random.default_rng([walk.settings.seed, 4, frame_id])
+            yield Frame(t_ns, t_recv_ns, frame_id, ArrayPicture(exposure.sensed(light, falloff, rng)))
+            exposed = exposed.after(light, period_s)
             progress((frame_id + 1) / len(times))
 
 
-def _noisy(bgr: Image, walk: Walk, frame_id: int) -> Image:
-    rng = np.random.default_rng([walk.settings.seed, 4, frame_id])
-    noise = rng.normal(0.0, PICTURE_NOISE, bgr.shape[:2])[:, :, None]
-    return np.clip(bgr + noise, 0, 255).astype(np.uint8)
+class _Eye:
+    """What falls on the camera's sensor. A visitor who stands quite still sees the same picture again, which is drawn once."""
+
+    def __init__(self, renderer: Renderer, walk: Walk, camera: CameraModel) -> None:
+        self._renderer, self._walk, self._camera = renderer, walk, camera
+        self._last: tuple[bytes, Image] | None = None
+
+    def taken(self, t_ns: int, exposed: Exposure) -> Image:
+        """Return the light of an exposure with `t_ns` at its middle."""
+        half_s = exposed.time_s / 2.0
+        moved_px = exposure.motion_px(self._pose(t_ns, -half_s), self._pose(t_ns, half_s), _pinhole(self._camera))
+        moments = exposure.moments(exposed.time_s, moved_px).tolist()
+        poses = np.array([self._pose(t_ns, after_s) for after_s in moments])
+        key = poses.tobytes() + repr(exposed.time_s).encode()
+        if self._last is None or self._last[0] != key:
+            # where much of a picture is blurred anyway, its moments need not be fine ones
+            fine = len(poses) < COARSE_MOMENTS
+            pictures = [self._drawn(pose, exposed.brightness, fine) for pose in poses]
+            self._last = key, exposure.mean_of(pictures)
+        return self._last[1]
+
+    def _pose(self, t_ns: int, after_s: float) -> Matrix:
+        return self._walk.T_site_cam(t_ns + round(after_s * 1e9))
+
+    def _drawn(self, T_site_cam: Matrix, brightness: float, fine: bool) -> Image:
+        camera = self._camera
+        return self._renderer.render(
+            T_site_cam,
+            camera.fx_px,
+            camera.fy_px,
+            camera.cx_px,
+            camera.cy_px,
+            camera.distortion_model,
+            camera.distortion,
+            brightness=brightness,
+            fine=fine,
+        )
+
+
+def _pinhole(camera: CameraModel) -> Pinhole:
+    return Pinhole(camera.width_px, camera.height_px, camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px)

@@ -9,12 +9,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.choreography import AGORA_TOUR, PATTERNS, Tour, choreograph
+from tracker.choreography import AGORA_TOUR, PATTERNS, Draft, Pattern, Tour, choreograph
 from tracker.estimator import Origin
 from tracker.gait import Body, Ground, Motion
 from tracker.geodesy import SiteFrame, gravity_m_s2
 from tracker.geomagnetism import magnetic_field
 from tracker.geometry import wxyz_from_matrix
+from tracker.itinerary import AGORA_DEMO, Itinerary, follow, planned_s
 from tracker.measurements import GpsFix, GpsVelocity, ImuSample, MagSample, Matrix, Measurement, TruePose, Vector3
 from tracker.rig import R_BODY_CAM_FORWARD, CameraModel, Rig
 
@@ -60,9 +61,15 @@ class WalkSettings:
     camera_hz: float = 12.0
     truth_hz: float = 100.0
     tour: Tour = AGORA_TOUR
+    itinerary: Itinerary | None = None
+    """A walk by plan instead of one by chance on the tour."""
     origin: Origin = AGORA_ORIGIN
     eye_height_m: float = EYE_HEIGHT_M
     noise: SensorNoise = field(default_factory=SensorNoise)
+
+
+#: The demo's walk lasts as long as its plan; nine seconds at its start are enough to calibrate at rest.
+DEMO_WALK = WalkSettings(duration_s=planned_s(AGORA_DEMO, 9.0), still_s=9.0, itinerary=AGORA_DEMO)
 
 
 def default_rig() -> Rig:
@@ -85,11 +92,7 @@ class Walk:
     def __init__(self, settings: WalkSettings, rig: Rig, ground_z_m: Ground = flat_ground) -> None:
         self.settings, self.rig = settings, rig
         pattern = PATTERNS[settings.dataset]
-        rng = np.random.default_rng([settings.seed, 0])
-        # a little longer than asked for: the last pictures are interpolated as all others are
-        length_s = settings.duration_s + 1.0
-        draft = choreograph(pattern, settings.tour, length_s, settings.still_s, settings.eye_height_m, rng)
-        self._body = Body(draft, ground_z_m, settings.eye_height_m, pattern.sways)
+        self._body = Body(_draft(settings, pattern), ground_z_m, settings.eye_height_m, pattern.sways)
 
     def at(self, t_ns: NDArray[np.int64]) -> Motion:
         """Return the motion of the body at (n,) stamps."""
@@ -111,6 +114,15 @@ class Walk:
         """Return capture and arrival of every picture."""
         late_ns = int(self.settings.noise.camera_late_s * 1e9)
         return [(int(t), int(t) + late_ns) for t in self.stamps(self.settings.camera_hz)]
+
+
+def _draft(settings: WalkSettings, pattern: Pattern) -> Draft:
+    # a little longer than asked for: the last pictures are interpolated as all others are
+    length_s = settings.duration_s + 1.0
+    if settings.itinerary is not None:
+        return follow(settings.itinerary, length_s, settings.still_s, settings.eye_height_m)
+    rng = np.random.default_rng([settings.seed, 0])
+    return choreograph(pattern, settings.tour, length_s, settings.still_s, settings.eye_height_m, rng)
 
 
 def simulate(walk: Walk) -> Iterator[Measurement]:

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from assets.gltf import Node
+from assets.scene import Node
 from assets.shape import Mesh, Place, Shape
 
 Points = NDArray[np.float64]
@@ -11,8 +11,9 @@ ORIGIN = Place.at(0.0, 0.0, 0.0)
 
 
 def corners(meshes: list[Mesh] | Node) -> Points:
-    """Return the triangles (m, 3, 3) of some meshes."""
-    parts = meshes.meshes if isinstance(meshes, Node) else meshes
+    """Return the triangles (m, 3, 3) of some meshes, or of a node with all copies of its parts."""
+    many = [part.expanded() for part in meshes.instances] if isinstance(meshes, Node) else []
+    parts = [*meshes.meshes, *many] if isinstance(meshes, Node) else meshes
     return np.concatenate([mesh.positions_m[mesh.triangles] for mesh in parts]).astype(np.float64)
 
 

@@ -6,19 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from assets import parts
-from assets.roman_temples import hip_roof, offset, prism
+from assets.parts import offset, prism
 from assets.shape import Shape
-from tests.assets.geometry import ORIGIN, across, drawn, open_edges, volume_m3
+from tests.assets.geometry import ORIGIN, across, drawn, open_edges
 
 HEXAGON = np.stack([np.cos(np.arange(6) * np.pi / 3), np.sin(np.arange(6) * np.pi / 3)], axis=-1) * 10.0
-
-
-@given(diameter=st.floats(0.3, 1.5), slenderness=st.floats(5.0, 12.0), plain=st.booleans())
-def test_a_column_is_as_high_and_as_wide_as_asked(diameter: float, slenderness: float, plain: bool) -> None:
-    points = drawn(parts.column(diameter, diameter * slenderness, plain)).reshape(-1, 3)
-    assert points[:, 2].min() == pytest.approx(0.0, abs=1e-6)
-    assert points[:, 2].max() == pytest.approx(diameter * slenderness, rel=1e-5)
-    assert np.abs(points[:, :2]).max() == pytest.approx(0.68 * diameter, rel=0.02)
 
 
 def test_a_shaft_looks_outward() -> None:
@@ -46,24 +38,6 @@ def test_steps_go_down_all_around_within_a_metre(count: int, rise: float) -> Non
     assert triangles[..., 0].min() >= -parts.STEPS_OUT_M - 1e-6
 
 
-def test_a_gable_roof_meets_its_ridge_and_its_eaves() -> None:
-    shape = Shape()
-    parts.gable(shape, 0.0, 10.0, 0.0, 6.0, 4.0, 6.0)
-    triangles = drawn(shape)
-    assert triangles[..., 2].max() == pytest.approx(6.03, abs=1e-5)
-    assert triangles[..., :2].reshape(-1, 2).min(axis=0) == pytest.approx([-0.5, -0.54], abs=1e-5)
-    tiles = next(mesh for mesh in shape.meshes(ORIGIN) if mesh.material == "tiles")
-    assert (across(tiles.positions_m[tiles.triangles].astype(float))[:, 2] > 0.0).all()
-
-
-@pytest.mark.parametrize(("low", "high"), [(0.0, 5.0), (5.0, 0.0)])
-def test_a_lean_to_looks_up_either_way(low: float, high: float) -> None:
-    shape = Shape()
-    parts.lean_to(shape, 0.0, 8.0, low, high, 3.0, 4.5)
-    tiles = next(mesh for mesh in shape.meshes(ORIGIN) if mesh.material == "tiles")
-    assert (across(tiles.positions_m[tiles.triangles].astype(float))[:, 2] > 0.0).all()
-
-
 def test_an_arch_leaves_its_opening_open() -> None:
     shape = Shape()
     parts.arch(shape, "marble", 5.0, 4.0, 0.0, 1.0, 3.0, 6.0, 24)
@@ -74,6 +48,18 @@ def test_an_arch_leaves_its_opening_open() -> None:
     front = triangles[np.abs(triangles[..., 1]).max(axis=1) < 1e-9]
     assert (across(front)[:, 1] < 0.0).all()
     assert -across(front)[:, 1].sum() == pytest.approx(4.0 * 3.0 - np.pi * 2.0, rel=0.02)
+
+
+def test_the_underside_of_an_arch_looks_into_the_opening() -> None:
+    shape = Shape()
+    parts.arch(shape, "marble", 5.0, 4.0, 0.0, 1.0, 3.0, 6.0, 24)
+    triangles = drawn(shape)
+    near = np.hypot(triangles[..., 0] - 5.0, triangles[..., 2] - 3.0).max(axis=1) < 2.01
+    deep = np.ptp(triangles[..., 1], axis=1) > 0.5
+    under = triangles[near & deep]
+    assert len(under) == 48
+    inward = (5.0, 0.5, 3.0) - under.mean(axis=1)
+    assert (np.einsum("ki,ki->k", across(under), inward) > 0.0).all()
 
 
 def test_a_vault_looks_up_and_out() -> None:
@@ -114,9 +100,37 @@ def test_an_outline_is_moved_out_evenly(out: float) -> None:
     assert np.linalg.norm(middles, axis=1) == pytest.approx(np.full(6, inner + out))
 
 
-def test_a_hipped_roof_is_watertight() -> None:
+def test_a_wall_around_an_outline_encloses_its_own_volume() -> None:
     shape = Shape()
-    hip_roof(shape, HEXAGON, np.column_stack([np.clip(HEXAGON[:, 0], -3.0, 3.0), np.zeros(6)]), 5.0, 8.0)
+    parts.ring_wall(shape, "ashlar", HEXAGON, 1.0, 2.0, 5.0)
     triangles = drawn(shape)
-    assert not open_edges(triangles)
-    assert volume_m3(triangles) > 0.0
+    assert {point[2] for edge in open_edges(triangles) for point in edge} == {2.0}
+    inner = (10.0 - 2.0 / np.sqrt(3.0)) ** 2
+    lid = across(triangles)[:, 2].sum()
+    assert lid == pytest.approx(1.5 * np.sqrt(3.0) * (100.0 - inner), rel=1e-4)
+
+
+def test_a_pierced_wall_is_open_where_told() -> None:
+    shape = Shape()
+    parts.pierced(shape, "ashlar", (0.0, 10.0), (0.0, 1.0), (0.0, 5.0), [(7.0, 1.0, 1.0, 3.0), (3.0, 2.0, 0.0, 4.0)])
+    front = drawn(shape)
+    front = front[np.abs(front[..., 1]).max(axis=1) < 1e-9]
+    assert -across(front)[:, 1].sum() == pytest.approx(10.0 * 5.0 - 2.0 * 4.0 - 1.0 * 2.0, rel=1e-5)
+
+
+@pytest.mark.parametrize("facing", [-1.0, 1.0])
+def test_a_door_stands_before_its_wall(facing: float) -> None:
+    shape = Shape()
+    parts.door(shape, 5.0, 2.0, (2.0, 3.0), facing)
+    points = drawn(shape).reshape(-1, 3)
+    assert ((points[:, 1] - 2.0) * facing).min() == pytest.approx(0.0, abs=1e-6)
+    assert ((points[:, 1] - 2.0) * facing).max() <= 0.35
+    assert {mesh.material for mesh in shape.meshes(ORIGIN)} == {"marble", "wood"}
+
+
+def test_a_moulded_block_is_as_high_as_asked_and_stands_out_at_foot_and_cornice() -> None:
+    shape = Shape()
+    parts.moulded(shape, "ashlar", (0.0, 4.0, 0.0, 3.0), (1.0, 5.0))
+    points = drawn(shape).reshape(-1, 3)
+    assert points.min(axis=0) == pytest.approx([-0.25, -0.25, 1.0])
+    assert points.max(axis=0) == pytest.approx([4.25, 3.25, 5.0])

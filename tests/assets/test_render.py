@@ -1,14 +1,12 @@
 """The renderer against OpenCV: what is drawn lies where `cv2.projectPoints` says."""
 
 from collections.abc import Callable
-from pathlib import Path
 
 import cv2
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from assets.errors import AssetError
 from assets.gltf import Node, Scene
 from assets.lens import Pinhole
 from assets.materials import MATERIALS
@@ -144,6 +142,12 @@ def test_colours_must_match_points_and_poses_be_four_by_four(renderer: Make, pla
         drawing.render(np.eye(3), 50.0, 50.0, 32.0, 24.0)
 
 
-def test_a_model_that_is_not_there_is_named(open_gl: None) -> None:
-    with pytest.raises(AssetError, match=r"nowhere\.glb cannot be read; build the models with: agora build"):
-        Renderer(Path("nowhere.glb"), 64, 48)
+def test_more_light_makes_a_brighter_picture(renderer: Make, today: Scene) -> None:
+    drawing, pose = renderer(today, 160, 120), looking_north(1.65, 0.0)
+    dark, usual, bright = (
+        drawing.render(pose, 130.0, 130.0, 79.5, 59.5, brightness=light).astype(float) for light in (0.7, 1.0, 1.4)
+    )
+    assert (dark <= usual).all()
+    assert (usual <= bright).all()
+    assert dark.mean() < usual.mean() - 10.0
+    assert bright.mean() > usual.mean() + 10.0

@@ -116,3 +116,28 @@ def test_a_closed_shape_encloses_its_volume() -> None:
     shape.polygons("marble", [(0.0, 0.0, 0.0), (0.0, 3.0, 0.0), (2.0, 3.0, 0.0), (2.0, 0.0, 0.0)])
     assert not open_edges(drawn(shape))
     assert volume_m3(drawn(shape)) == pytest.approx(24.0, rel=1e-5)
+
+
+def test_a_slab_is_closed() -> None:
+    shape = Shape()
+    shape.slab("marble", (0.0, 0.0, 1.0), (2.0, 3.0, 5.0))
+    assert not open_edges(drawn(shape))
+    assert volume_m3(drawn(shape)) == pytest.approx(24.0, rel=1e-5)
+
+
+def test_a_leaf_is_turned_to_the_side_that_it_is_lit_from() -> None:
+    shape = Shape()
+    corners = np.array([[[0.0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0.0, 0, 0], [0, 1, 0], [1, 0, 0]]])
+    shape.leaves("leaves", corners, np.tile((0.0, 0.0, 1.0), (2, 1)), np.ones((2, 3)))
+    assert (across(drawn(shape))[:, 2] > 0.0).all()
+
+
+def test_long_sides_are_laid_as_grids_that_still_meet() -> None:
+    plain, split = Shape(), Shape(split_m=2.0)
+    for shape in (plain, split):
+        shape.slab("marble", (0.0, 0.0, 0.0), (7.0, 3.0, 2.0))
+    assert len(drawn(split)) > 3 * len(drawn(plain))
+    assert not open_edges(drawn(split))
+    assert volume_m3(drawn(split)) == pytest.approx(volume_m3(drawn(plain)))
+    edges = np.linalg.norm(np.diff(drawn(split), axis=1, append=drawn(split)[:, :1]), axis=2)
+    assert edges.max() <= 2.0 * np.sqrt(2.0) + 1e-6

@@ -1,6 +1,7 @@
 /** The text messages: what the server sends is read, what nobody would send does no harm. */
 
-import { ProtocolError, parseSession, parseSessions, parseSite, parseState } from "../../web/src/protocol";
+import { ProtocolError, parseSession, parseSessions, parseState } from "../../web/src/protocol";
+import { parseSite } from "../../web/src/site";
 import { forSeeds, type Random } from "./random";
 
 /** As `server/sessions.py` describes a replay. */
@@ -126,41 +127,4 @@ test("whatever the text or the site, only a ProtocolError escapes", () => {
         expect(error).toBeInstanceOf(ProtocolError);
       }
   });
-});
-
-test("a site is read with its monuments, and what it leaves out has a plain value", () => {
-  const site = parseSite({
-    name: "State Agora of Ephesus",
-    models: { roman: "/models/roman.glb", broken: 3 },
-    attribution: "© OpenStreetMap contributors, ODbL 1.0",
-    monuments: [
-      {
-        id: "odeon",
-        name: "Council house",
-        height_m: 13.1,
-        base_z_m: 0.9,
-        footprint_en: [[1, 2], [3, 4], [5]],
-        evidence: "inferred",
-        caption: "A caption.",
-      },
-      { id: "bare" },
-    ],
-  });
-  expect(site.models).toEqual({ roman: "/models/roman.glb" });
-  expect(site.attribution).toContain("OpenStreetMap");
-  expect(site.monuments[0]?.footprint_en).toEqual([
-    [1, 2],
-    [3, 4],
-    [5, 0],
-  ]);
-  expect(site.monuments[1]).toEqual({
-    id: "bare",
-    name: "bare",
-    height_m: null,
-    base_z_m: 0,
-    footprint_en: [],
-    evidence: null,
-    caption: null,
-  });
-  expect(parseSite({}).models).toEqual({});
 });

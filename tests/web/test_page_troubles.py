@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, Page, WebSocketRoute
 
+from assets.levels import LEVELS
 from server.showing import Showing
 from server.wire import is_frame
 from tests.web.pages import ArPage, open_page
@@ -159,6 +160,7 @@ def test_every_request_goes_to_the_pages_own_server(browser: Browser, showing: S
     with open_page(browser) as ar:
         ar.page.goto(showing.url)
         ar.ask("agora.ready")
+        ar.until("agora.stats().whole")
         ar.until("document.querySelector('#walks a') !== null")
         assert "OpenStreetMap" in ar.page.inner_text("#credit")
         ar.page.click("#walks a")
@@ -168,5 +170,6 @@ def test_every_request_goes_to_the_pages_own_server(browser: Browser, showing: S
         own = (showing.url, showing.url.replace("http", "ws", 1), f"blob:{showing.url}")
         assert [url for url in ar.requests if not url.startswith(own)] == []
         assert any(url.endswith(f"/ws/view/{NAME}") for url in ar.requests)
-        assert any(url.endswith("/models/roman.glb") for url in ar.requests)
+        for level in LEVELS:
+            assert any(url.endswith(f"/models/roman.{level}.glb") for url in ar.requests)
         assert ar.errors == []

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from assets.gltf import Node, Scene, write_glb
+from assets.levels import LEVELS, PAGE_RULES
 from assets.materials import MATERIALS
 from assets.shape import Place, Shape, footprint_own_m
 from assets.site import Monument, Site, load_site
@@ -81,25 +82,33 @@ def make_scene(site: Site) -> Scene:
         "paving", [(-200.0, -150.0, -0.05), (200.0, -150.0, -0.05), (200.0, 150.0, -0.05), (-200.0, 150.0, -0.05)]
     )
     nodes = [Node("ground", ground.meshes(Place.at(0.0, 0.0, 0.0)), {"role": "ground"})]
-    nodes += [_volume(monument) for monument in site.monuments if "roman" in monument.epochs]
+    for monument in site.shown_in("roman"):
+        rivals: list[str | None] = [variant.id for variant in monument.variants] or [None]
+        nodes += [_volume(monument, rival) for rival in rivals]
     return Scene(nodes, {name: MATERIALS[name].paint() for name in ("paving", "marble", "tiles")})
 
 
-def _volume(monument: Monument) -> Node:
+def _volume(monument: Monument, rival: str | None) -> Node:
+    """Return a monument as a volume; a reconstruction that is not shown at first is half as high."""
     corners = footprint_own_m(monument)
     low = np.column_stack([corners, np.zeros(len(corners))])
-    high = low + np.array([0.0, 0.0, monument.height_m])
+    share = 1.0 if rival == monument.default_variant else 0.5
+    high = low + np.array([0.0, 0.0, share * monument.height_m])
     shape = Shape()
     shape.polygons("tiles", high)
     shape.polygons("marble", np.stack([low, np.roll(low, -1, 0), np.roll(high, -1, 0), high], axis=1))
-    return Node(monument.id, shape.meshes(Place.of(monument)), {"role": "building"})
+    facts = {"role": "building", "monument": monument.id, "evidence": monument.evidence}
+    variant = {} if rival is None else {"variant": rival}
+    name = monument.id if rival is None else f"{monument.id}/{rival}"
+    return Node(name, shape.meshes(Place.of(monument)), facts | variant)
 
 
 def make_site(folder: Path) -> Site:
-    """Return the State Agora with its model, built into `folder`."""
+    """Return the State Agora with its model, the same at three levels, built into `folder`."""
     site = replace(load_site(ROOT / "assets" / "state_agora"), folder=folder)
     (folder / "built").mkdir()
-    (folder / "built" / "roman.glb").write_bytes(write_glb(make_scene(site), {}))
+    for level in LEVELS:
+        (folder / "built" / f"roman.{level}.glb").write_bytes(write_glb(make_scene(site), PAGE_RULES))
     return site
 
 

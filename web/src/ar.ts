@@ -6,9 +6,10 @@ import { canDraw, element, publishNothing } from "./dom";
 import { invertRigid, T_gltf_site, transform, type Vector3 } from "./frames";
 import { Hud } from "./hud";
 import { project } from "./lens";
-import { loadSquare } from "./model";
+import { Square } from "./model";
 import type { Request } from "./playback";
-import { parseSessions, parseSite, parseState, type Session } from "./protocol";
+import { parseSessions, parseState, type Session } from "./protocol";
+import { parseSite } from "./site";
 import { Link } from "./socket";
 import { type CameraPose, decodeFrame, type FrameMessage, magicOf, WireError } from "./wire";
 import type { Connection, Situation } from "./words";
@@ -55,12 +56,14 @@ class Page {
 
   private async loadModel(): Promise<void> {
     try {
-      const site = parseSite(await (await fetch("/api/site")).json());
+      const site = parseSite(await (await fetch("/api/site")).json(), navigator.languages);
       element("credit", HTMLElement).textContent = site.attribution;
-      const url = site.models["roman"];
-      if (url === undefined) throw new Error("no model named roman");
-      this.composite.show(await loadSquare(url, GROUND_SHARE));
-      this.composite.redraw();
+      const levels = site.models["roman"];
+      if (!levels) throw new Error("no model named roman");
+      const square = await Square.load(levels, GROUND_SHARE);
+      for (const { id, defaultVariant } of site.monuments)
+        if (defaultVariant !== null) square.showVariant(id, defaultVariant);
+      this.composite.show(square);
       this.model = "shown";
     } catch (error) {
       this.model = "failed";

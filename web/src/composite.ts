@@ -22,6 +22,7 @@ import {
   ShaderMaterial,
   Texture,
   Vector2,
+  Vector3,
   WebGLRenderer,
   WebGLRenderTarget,
 } from "three";
@@ -88,6 +89,7 @@ export class Composite {
   private points: Points<BufferGeometry, PointsMaterial> | null = null;
   private shot: Shot | null = null;
   private model = { calls: 0, triangles: 0 };
+  private readonly eye = new Vector3();
 
   constructor(canvas: HTMLCanvasElement) {
     this.renderer = new WebGLRenderer({ canvas, antialias: false, alpha: false, powerPreference: "high-performance" });
@@ -126,7 +128,11 @@ export class Composite {
   /** Draw this square from now on. */
   show(square: Square): void {
     this.square = square;
-    this.renderer.shadowMap.needsUpdate = true;
+    square.changed = () => {
+      this.renderer.shadowMap.needsUpdate = true;
+      this.redraw();
+    };
+    square.changed();
   }
 
   /** Fit the canvas to its place on the page. */
@@ -229,6 +235,8 @@ export class Composite {
     const view = viewFromCam(T_site_cam);
     this.camera.matrix.fromArray(view as number[]).transpose();
     this.camera.updateMatrixWorld(true);
+    if (square.update(this.eye.setFromMatrixPosition(this.camera.matrixWorld)))
+      this.renderer.shadowMap.needsUpdate = true;
     this.renderer.setRenderTarget(this.drawing);
     this.renderer.setClearColor(0x000000, 0);
     this.renderer.clear();

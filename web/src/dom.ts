@@ -23,8 +23,8 @@ export function canDraw(notice: HTMLElement): boolean {
   return false;
 }
 
-/** Put `globalThis.agora` in place on a page that draws no pictures of a walk. */
-export function publishNothing(ready: Promise<void> = Promise.resolve()): void {
-  const api = { ready, stats: () => null, project: () => null, pose: () => null };
+/** Put `globalThis.agora` in place on a page that draws no pictures of a walk; `stats` tells what it draws instead, if anything. */
+export function publishNothing(ready: Promise<void> = Promise.resolve(), stats: () => unknown = () => null): void {
+  const api = { ready, stats, project: () => null, pose: () => null };
   Object.defineProperty(globalThis, "agora", { value: Object.freeze(api) });
 }

@@ -1,20 +1,19 @@
-/** The start page: the square as it stood, to turn about, and the walks that can be joined. */
+/** The start page: the square as it stood and as it stands, to turn about and to stand in, and the walks that can be joined. */
 
-import { ACESFilmicToneMapping, Color, Fog, PerspectiveCamera, Raycaster, Vector2, WebGLRenderer } from "three";
-import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { Card } from "./card";
 import { canDraw, element, publishNothing, tell } from "./dom";
-import { loadSquare } from "./model";
+import { EVIDENCE, EVIDENCE_COLOURS, EVIDENCE_WORDS } from "./evidence";
+import { Square } from "./model";
 import { clockText } from "./playback";
-import { type Monument, parseSessions, parseSite, type Site } from "./protocol";
+import { parseSessions } from "./protocol";
+import { type Monument, parseSite, type Site } from "./site";
+import { Stage } from "./stage";
 import { MODEL_FAILED } from "./words";
 
-const SKY = 0xbfd4e6;
 const LOOK_AGAIN_MS = 3000;
-/** From over the south-east corner, along the square; gltf axes, metres. */
-const VIEW_FROM = [78, 66, 112] as const;
-const VIEW_OF = [-25, 2, 0] as const;
-/** On a screen held upright the field of view grows upwards, so that at least this much is seen across. */
-const LEAST_WIDTH_DEG = 38;
+/** On a narrower screen the panel is folded at first, so that the square is seen. */
+const NARROW_PX = 600;
+const MODEL_WORDS: Readonly<Record<string, string>> = { roman: "AD 150", today: "Today" };
 
 async function showWalks(): Promise<void> {
   const note = element("walks-note", HTMLElement);
@@ -41,103 +40,170 @@ async function showWalks(): Promise<void> {
   window.setTimeout(() => void showWalks(), LOOK_AGAIN_MS);
 }
 
-async function showSquare(site: Site): Promise<void> {
-  const canvas = element("view", HTMLCanvasElement);
-  const renderer = new WebGLRenderer({ canvas, antialias: true });
-  renderer.toneMapping = ACESFilmicToneMapping;
-  renderer.shadowMap.enabled = true;
-  renderer.shadowMap.autoUpdate = false;
-  renderer.shadowMap.needsUpdate = true;
-  const { scene, model } = await loadSquare(site.models["roman"] ?? "/models/roman.glb", 1);
-  scene.background = new Color(SKY);
-  scene.fog = new Fog(SKY, 180, 620);
-  const camera = new PerspectiveCamera(45, 1, 0.5, 1500);
-  camera.position.set(...VIEW_FROM);
-  const controls = new OrbitControls(camera, canvas);
-  controls.target.set(...VIEW_OF);
-  controls.maxPolarAngle = 1.5;
-  controls.minDistance = 8;
-  controls.maxDistance = 320;
-  controls.enableDamping = false;
-  controls.listenToKeyEvents(canvas);
-  let asked = false;
-  const draw = (): void => {
-    asked = false;
-    renderer.render(scene, camera);
-  };
-  const ask = (): void => {
-    if (!asked) requestAnimationFrame(draw);
-    asked = true;
-  };
-  controls.addEventListener("change", ask);
-  const fill = (): void => {
-    renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
-    renderer.setSize(canvas.clientWidth, canvas.clientHeight, false);
-    camera.aspect = canvas.clientWidth / Math.max(1, canvas.clientHeight);
-    camera.fov = fieldOf(camera.aspect);
-    camera.updateProjectionMatrix();
-    ask();
-  };
-  new ResizeObserver(fill).observe(canvas);
-  controls.update();
-  fill();
-  nameOnHover(canvas, camera, model, site.monuments);
-}
+class Home {
+  private readonly stage: Stage;
+  private readonly card: Card;
+  private readonly byId: ReadonlyMap<string, Monument>;
+  private square: Square | null = null;
+  private whole = false;
+  private model: string;
+  private evidence: boolean;
 
-/** Return the vertical field of view, degrees, that shows the width of the square on a screen of this shape. */
-function fieldOf(aspect: number): number {
-  const halfWidth = Math.tan((LEAST_WIDTH_DEG * Math.PI) / 360);
-  return Math.max(45, (Math.atan(halfWidth / aspect) * 360) / Math.PI);
-}
+  constructor(
+    private readonly site: Site,
+    asked: URLSearchParams,
+  ) {
+    this.card = new Card(site, () => this.square);
+    this.byId = new Map(site.monuments.map((monument) => [monument.id, monument]));
+    this.stage = new Stage(element("view", HTMLCanvasElement), site.eye_height_m);
+    this.model = asked.get("model") ?? "roman";
+    this.evidence = asked.get("evidence") === "1";
+    element("about", HTMLDetailsElement).open = innerWidth >= NARROW_PX;
+    this.offerModels();
+    this.offerEvidence();
+    this.offerTour(asked.get("view"));
+    this.namePointed();
+  }
 
-/** Name the monument under the pointer, or under a finger that taps. */
-function nameOnHover(
-  canvas: HTMLCanvasElement,
-  camera: PerspectiveCamera,
-  model: Parameters<Raycaster["intersectObject"]>[0],
-  monuments: readonly Monument[],
-): void {
-  const label = element("label", HTMLElement);
-  const caster = new Raycaster();
-  const byId = new Map(monuments.map((monument) => [monument.id, monument]));
-  let busy = false;
-  const nameAt = ({ clientX, clientY }: MouseEvent): void => {
-    if (busy) return;
-    busy = true;
-    requestAnimationFrame(() => {
-      busy = false;
-      caster.setFromCamera(new Vector2((2 * clientX) / innerWidth - 1, 1 - (2 * clientY) / innerHeight), camera);
-      let node = caster.intersectObject(model)[0]?.object ?? null;
-      while (node !== null && !byId.has(node.name)) node = node.parent;
-      const monument = node === null ? undefined : byId.get(node.name);
-      tell(label, monument?.name ?? null);
-      label.style.left = `${clientX}px`;
-      label.style.top = `${clientY}px`;
+  /** Load and show the chosen model; resolves at its first paint. */
+  async load(): Promise<void> {
+    const { model } = this;
+    const levels = this.site.models[model];
+    if (!levels) throw new Error(`no model named ${model}`);
+    this.whole = false;
+    const square = await Square.load(levels, 1);
+    if (model !== this.model) return square.dispose(); // another one was asked for meanwhile
+    this.square = square;
+    for (const { id, defaultVariant } of this.site.monuments)
+      if (defaultVariant !== null) square.showVariant(id, defaultVariant);
+    square.showEvidence(this.evidence);
+    this.stage.show(square);
+    void square.whole.then(() => {
+      this.whole = this.square === square;
     });
-  };
-  canvas.onpointermove = (event) => {
-    if (event.buttons === 0) nameAt(event);
-    else tell(label, null);
-  };
-  canvas.onclick = nameAt;
-  canvas.onpointerleave = ({ pointerType }) => {
-    if (pointerType === "mouse") tell(label, null);
-  };
-}
+  }
 
-async function start(): Promise<void> {
-  const notice = element("notice", HTMLElement);
-  void showWalks();
-  if (!canDraw(notice)) return;
-  try {
-    const site = parseSite(await (await fetch("/api/site")).json());
-    element("site", HTMLElement).textContent = site.name;
-    element("credit", HTMLElement).textContent = site.attribution;
-    await showSquare(site);
-  } catch (error) {
-    tell(notice, MODEL_FAILED);
-    console.warn(error);
+  get stats(): Readonly<Record<string, unknown>> {
+    return { ...this.stage.stats, model: this.model, whole: this.whole && this.stage.isSettled };
+  }
+
+  private offerModels(): void {
+    const buttons = Object.keys(this.site.models)
+      .filter((model) => model in MODEL_WORDS)
+      .map((model) => {
+        const button = document.createElement("button");
+        button.type = "button";
+        button.textContent = MODEL_WORDS[model] ?? model;
+        button.setAttribute("aria-pressed", String(model === this.model));
+        button.onclick = () => {
+          if (model === this.model) return;
+          this.model = model;
+          for (const other of buttons) other.setAttribute("aria-pressed", String(other === button));
+          this.card.show(null, null);
+          this.load().catch((error: unknown) => complain(error));
+        };
+        return button;
+      });
+    const models = element("models", HTMLElement);
+    models.replaceChildren(...buttons);
+    models.hidden = buttons.length < 2;
+  }
+
+  private offerEvidence(): void {
+    const box = element("evidence", HTMLInputElement);
+    const legend = element("legend", HTMLElement);
+    legend.replaceChildren(
+      ...EVIDENCE.map((evidence) => {
+        const row = document.createElement("li");
+        row.dataset["evidence"] = evidence;
+        row.textContent = this.site.evidence[evidence] ?? EVIDENCE_WORDS[evidence];
+        return row;
+      }),
+    );
+    for (const evidence of EVIDENCE)
+      document.documentElement.style.setProperty(`--${evidence}`, EVIDENCE_COLOURS[evidence]);
+    const apply = (): void => {
+      this.evidence = box.checked;
+      legend.hidden = !box.checked;
+      this.square?.showEvidence(box.checked);
+    };
+    box.checked = this.evidence;
+    box.onchange = apply;
+    apply();
+  }
+
+  private offerTour(asked: string | null): void {
+    const menu = element("tour", HTMLSelectElement);
+    const { views } = this.site;
+    menu.append(...views.map(({ id, name }) => new Option(name, id, false, id === asked)));
+    element("places", HTMLElement).hidden = views.length === 0;
+    const apply = (): void => {
+      const view = views.find(({ id }) => id === menu.value);
+      if (view) this.stage.stand(view);
+      else this.stage.fly();
+      tell(element("guide", HTMLElement), view?.text ?? null);
+      element("lead", HTMLElement).hidden = Boolean(view?.text);
+    };
+    menu.onchange = apply;
+    apply();
+  }
+
+  /** Name the monument under the pointer; a click or a tap tells of it. */
+  private namePointed(): void {
+    const canvas = element("view", HTMLCanvasElement);
+    const label = element("label", HTMLElement);
+    let busy = false;
+    const nameAt = (event: MouseEvent): void => {
+      if (busy) return;
+      busy = true;
+      requestAnimationFrame(() => {
+        busy = false;
+        tell(label, this.byId.get(this.stage.at(event)?.group ?? "")?.name ?? null);
+        label.style.left = `${event.clientX}px`;
+        label.style.top = `${event.clientY}px`;
+      });
+    };
+    canvas.onpointermove = (event) => {
+      if (event.buttons === 0 && event.pointerType === "mouse") nameAt(event);
+      else tell(label, null);
+    };
+    let from: readonly [number, number] = [0, 0];
+    canvas.onpointerdown = ({ clientX, clientY }) => {
+      from = [clientX, clientY];
+    };
+    canvas.onclick = (event) => {
+      if (Math.hypot(event.clientX - from[0], event.clientY - from[1]) > 6) return; // the end of a drag
+      const thing = this.stage.at(event);
+      this.card.show(this.byId.get(thing?.group ?? "") ?? null, thing);
+    };
+    canvas.onpointerleave = () => tell(label, null);
   }
 }
 
-publishNothing(start());
+function complain(error: unknown): void {
+  tell(element("notice", HTMLElement), MODEL_FAILED);
+  console.warn(error);
+}
+
+function start(): void {
+  void showWalks();
+  if (!canDraw(element("notice", HTMLElement))) {
+    publishNothing();
+    return;
+  }
+  let home: Home | null = null;
+  const show = async (): Promise<void> => {
+    try {
+      const site = parseSite(await (await fetch("/api/site")).json(), navigator.languages);
+      element("site", HTMLElement).textContent = site.name;
+      element("credit", HTMLElement).textContent = site.attribution;
+      home = new Home(site, new URLSearchParams(location.search));
+      await home.load();
+    } catch (error) {
+      complain(error);
+    }
+  };
+  publishNothing(show(), () => home?.stats ?? null);
+}
+
+start();

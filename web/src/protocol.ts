@@ -37,25 +37,6 @@ export type StateMessage =
   | { readonly type: "session"; readonly session: Session }
   | { readonly type: "reply"; readonly reply: Reply };
 
-export interface Monument {
-  readonly id: string;
-  readonly name: string;
-  readonly height_m: number | null;
-  /** Corners on the ground, east and north of the origin, metres. */
-  readonly footprint_en: readonly (readonly [number, number])[];
-  readonly base_z_m: number;
-  readonly evidence: string | null;
-  readonly caption: string | null;
-}
-
-export interface Site {
-  readonly name: string;
-  readonly place: string;
-  readonly models: Readonly<Record<string, string>>;
-  readonly attribution: string;
-  readonly monuments: readonly Monument[];
-}
-
 /** Text that is not what it claims to be. */
 export class ProtocolError extends Error {
   constructor(message: string) {
@@ -64,7 +45,8 @@ export class ProtocolError extends Error {
   }
 }
 
-type Fields = Readonly<Record<string, unknown>>;
+/** A JSON object. */
+export type Fields = Readonly<Record<string, unknown>>;
 
 /** Read a text message of the state plane; null for a type that this page does not know (a newer server's). */
 export function parseState(text: string): StateMessage | null {
@@ -113,37 +95,6 @@ export function parseSessions(value: unknown): readonly Session[] {
   return list(fields(value, "sessions")["sessions"]).map(parseSession);
 }
 
-/** Read `GET /api/site`. */
-export function parseSite(value: unknown): Site {
-  const site = fields(value, "site");
-  return {
-    name: text_(site["name"], "The ancient square"),
-    place: text_(site["place"], ""),
-    models: texts(site["models"]),
-    attribution: text_(site["attribution"], ""),
-    monuments: list(site["monuments"]).map(parseMonument),
-  };
-}
-
-function parseMonument(value: unknown): Monument {
-  const monument = fields(value, "monument");
-  const footprint_en = list(monument["footprint_en"]).map((corner): readonly [number, number] => {
-    const [east, north] = list(corner);
-    return [number(east, 0), number(north, 0)];
-  });
-  const height = monument["height_m"] ?? monument["height"];
-  const caption = monument["caption"];
-  return {
-    id: text_(monument["id"], ""),
-    name: text_(monument["name"], text_(monument["id"], "unnamed")),
-    height_m: typeof height === "number" && Number.isFinite(height) ? height : null,
-    footprint_en,
-    base_z_m: number(monument["base_z_m"] ?? monument["base_z"], 0),
-    evidence: typeof monument["evidence"] === "string" ? monument["evidence"] : null,
-    caption: typeof caption === "string" ? caption : null,
-  };
-}
-
 function parsePlayback(value: unknown): Playback {
   const playback = typeof value === "object" && value !== null ? fields(value, "playback") : {};
   return {
@@ -162,25 +113,30 @@ function parseJson(text: string): unknown {
   }
 }
 
-function fields(value: unknown, what: string): Fields {
+/** Return a value as an object; `what` it should be is named where it is none. */
+export function fields(value: unknown, what: string): Fields {
   if (typeof value !== "object" || value === null || Array.isArray(value))
     throw new ProtocolError(`the ${what} is no JSON object`);
   return value as Fields;
 }
 
-function list(value: unknown): readonly unknown[] {
+/** Return a value as a list; anything else is empty. */
+export function list(value: unknown): readonly unknown[] {
   return Array.isArray(value) ? value : [];
 }
 
-function number(value: unknown, otherwise: number): number {
+/** Return a value as a number; anything else is `otherwise`. */
+export function number(value: unknown, otherwise: number): number {
   return typeof value === "number" && Number.isFinite(value) ? value : otherwise;
 }
 
-function text_(value: unknown, otherwise: string): string {
+/** Return a value as a text; anything else is `otherwise`. */
+export function text_(value: unknown, otherwise: string): string {
   return typeof value === "string" ? value : otherwise;
 }
 
-function texts(value: unknown): Readonly<Record<string, string>> {
+/** Return the texts of an object by their keys. */
+export function texts(value: unknown): Readonly<Record<string, string>> {
   if (typeof value !== "object" || value === null) return {};
   return Object.fromEntries(
     Object.entries(value).filter((entry): entry is [string, string] => typeof entry[1] === "string"),

@@ -1,0 +1,136 @@
+/** What `GET /api/site` tells: the facts of a site, read leniently, every text in the visitor's language. No DOM in here. */
+
+import { type Fields, fields, list, number, text_, texts } from "./protocol";
+
+/** One of several ways in which scholars rebuild a monument. */
+export interface Variant {
+  readonly id: string;
+  readonly name: string;
+  /** What speaks for it. */
+  readonly why: string | null;
+}
+
+export interface Monument {
+  readonly id: string;
+  readonly name: string;
+  readonly evidence: string | null;
+  /** Where that is from, in full. */
+  readonly sources: readonly string[];
+  readonly caption: string | null;
+  readonly isReviewed: boolean;
+  readonly variants: readonly Variant[];
+  readonly defaultVariant: string | null;
+}
+
+/** A place to stand and a direction to look in. */
+export interface View {
+  readonly id: string;
+  readonly name: string;
+  readonly e_m: number;
+  readonly n_m: number;
+  /** Clockwise from north. */
+  readonly heading_rad: number;
+  readonly pitch_rad: number;
+  /** What a guide says there. */
+  readonly text: string | null;
+}
+
+export interface Site {
+  readonly name: string;
+  /** Addresses of each model's levels of detail, the finest first. */
+  readonly models: Readonly<Record<string, readonly string[]>>;
+  readonly attribution: string;
+  readonly eye_height_m: number;
+  /** The default view, then the guided tour. */
+  readonly views: readonly View[];
+  /** What each level of evidence means, in words. */
+  readonly evidence: Readonly<Record<string, string>>;
+  /** What the keys of sources stand for. */
+  readonly sources: Readonly<Record<string, string>>;
+  readonly monuments: readonly Monument[];
+}
+
+/** Read a site; texts in the first of `languages` that it has, else in English. */
+export function parseSite(value: unknown, languages: readonly string[] = []): Site {
+  const site = fields(value, "site");
+  const views = [site["default_view"], ...list(site["tour"])].filter(isObject);
+  const sources = texts(site["sources"]);
+  return {
+    name: inLanguage(site["names"], languages) ?? text_(site["name"], "The ancient square"),
+    models: parseModels(site["models"]),
+    attribution: text_(site["attribution"], ""),
+    eye_height_m: number(site["eye_height_m"], 1.65),
+    views: views.map((view) => parseView(view, languages)),
+    evidence: parseTexts(site["evidence"], languages),
+    sources,
+    monuments: list(site["monuments"])
+      .filter(isObject)
+      .map((monument) => parseMonument(monument, languages, sources)),
+  };
+}
+
+/** A model is the address of its only file, or its levels. */
+function parseModels(value: unknown): Site["models"] {
+  const models = Object.entries(isObject(value) ? value : {}).map(([name, model]): [string, readonly string[]] => {
+    if (typeof model === "string") return [name, [model]];
+    return [name, list(isObject(model) ? model["levels"] : []).filter((url) => typeof url === "string")];
+  });
+  return Object.fromEntries(models.filter(([, levels]) => levels.length > 0));
+}
+
+function parseView(view: Fields, languages: readonly string[]): View {
+  return {
+    id: text_(view["id"], ""),
+    name: inLanguage(view["names"] ?? view["name"], languages) ?? text_(view["id"], "unnamed"),
+    e_m: number(view["e_m"], 0),
+    n_m: number(view["n_m"], 0),
+    heading_rad: number(view["heading_rad"], 0),
+    pitch_rad: number(view["pitch_rad"], 0),
+    text: inLanguage(view["texts"] ?? view["text"], languages),
+  };
+}
+
+function parseMonument(monument: Fields, languages: readonly string[], sources: Site["sources"]): Monument {
+  const keys = list(monument["sources"]).filter((key) => typeof key === "string");
+  return {
+    id: text_(monument["id"], ""),
+    name: inLanguage(monument["names"] ?? monument["name"], languages) ?? text_(monument["id"], "unnamed"),
+    evidence: typeof monument["evidence"] === "string" ? monument["evidence"] : null,
+    sources: keys.map((key) => sources[key] ?? key),
+    caption: inLanguage(monument["captions"] ?? monument["caption"], languages),
+    isReviewed: monument["caption_status"] !== "unreviewed",
+    variants: list(monument["variants"])
+      .filter(isObject)
+      .map((variant) => parseVariant(variant, languages)),
+    defaultVariant: typeof monument["default_variant"] === "string" ? monument["default_variant"] : null,
+  };
+}
+
+function parseVariant(variant: Fields, languages: readonly string[]): Variant {
+  const id = text_(variant["id"], "");
+  return {
+    id,
+    name: inLanguage(variant["names"] ?? variant["name"], languages) ?? id,
+    why: inLanguage(variant["why"], languages),
+  };
+}
+
+function parseTexts(value: unknown, languages: readonly string[]): Readonly<Record<string, string>> {
+  const entries = Object.entries(isObject(value) ? value : {}).flatMap(([key, text]): [string, string][] => {
+    const words = inLanguage(text, languages);
+    return words === null ? [] : [[key, words]];
+  });
+  return Object.fromEntries(entries);
+}
+
+/** Return a text, or that one of several by language which is understood best; null for none. */
+function inLanguage(value: unknown, languages: readonly string[]): string | null {
+  if (typeof value === "string") return value === "" ? null : value;
+  const known = texts(value);
+  const best = [...languages.map((language) => language.slice(0, 2)), "en"].find((language) => known[language]);
+  return best === undefined ? (Object.values(known)[0] ?? null) : (known[best] ?? null);
+}
+
+function isObject(value: unknown): value is Fields {
+  return typeof value === "object" && value !== null && !Array.isArray(value);
+}
