@@ -45,7 +45,7 @@ def _printed(evaluation: Evaluation) -> str:
 def test_all_that_the_sensors_allow(walk: Path, tmp_path: Path) -> None:
     """Three estimators run; the two with a camera say what is missing; the files are what other programs read."""
     evaluation = evaluate([walk], (), tmp_path / "poses", _nothing)
-    assert [row["estimator"] for row in evaluation.runs] == ["gps-imu/cmm", "gps-imu/famm", "truth"]
+    assert [row["estimator"] for row in evaluation.runs] == ["gps-imu/cmm", "gps-imu/famm", "gps-imu/imm", "truth"]
     write_json(evaluation, tmp_path / "figures.json")
     found = json.loads((tmp_path / "figures.json").read_text())
     assert [(m["estimator"], m["missing"]) for m in found["missing"]] == [
