@@ -163,7 +163,7 @@ def test_evaluate_writes_figures_and_poses(walk: Path, tmp_path: Path) -> None:
     assert {run["log"] for run in written["runs"]} == {"small"}
     assert written["runs"][-1]["truth"]["ate_rmse_m"] < 1e-3
     names = sorted(path.name for path in (tmp_path / "poses").iterdir())
-    assert names == ["small.gps-imu-cmm.tum", "small.gps-imu-famm.tum", "small.truth.tum"]
+    assert names == [f"small.{name}.tum" for name in ("gps-imu-cmm", "gps-imu-famm", "gps-imu-imm", "truth")]
     assert all(len(line.split()) == 8 for line in (tmp_path / "poses" / names[0]).read_text().splitlines())
 
 
