@@ -34,6 +34,8 @@ NODE := $(shell node -e '$(NODE_FITS)' 2>/dev/null && command -v npm >/dev/null 
 ifneq ($(filter .tools/%,$(NODE)),)
 export PATH := $(CURDIR)/$(dir $(NODE)):$(PATH)
 endif
+# Playwright brings a Node.js that needs a library which a bare Debian lacks (libatomic1): it gets ours.
+export PLAYWRIGHT_NODEJS_PATH := $(abspath $(NODE))
 
 say = echo "agora: $(1)"
 stop = { echo "agora: $(1)" >&2; exit 1; }

@@ -8,18 +8,20 @@ import numpy as np
 from tracker.errors import UnknownEstimator
 from tracker.estimator import Estimator, Origin
 from tracker.geodesy import SiteFrame
-from tracker.motion import ConstantMotion, FuzzyMotion, MotionSelector
+from tracker.motion import ConstantMotion, FuzzyMotion, InteractingMotion, MotionSelector
 from tracker.paper import PaperEstimator, PaperSettings
 from tracker.rig import Rig
 from tracker.truth import TruthEstimator
 
-SELECTORS: dict[str, type[MotionSelector]] = {"cmm": ConstantMotion, "famm": FuzzyMotion}
+SELECTORS: dict[str, type[MotionSelector]] = {"cmm": ConstantMotion, "famm": FuzzyMotion, "imm": InteractingMotion}
 
 ESTIMATORS: tuple[str, ...] = (
     "gps-imu/cmm",
     "gps-imu/famm",
+    "gps-imu/imm",
     "camera-gps-imu/cmm",
     "camera-gps-imu/famm",
+    "camera-gps-imu/imm",
     "truth",
 )
 DEFAULT_ESTIMATOR = "camera-gps-imu/famm"

@@ -72,6 +72,14 @@ class FusionFilter:
         for axis in range(3):
             self.var_value[axis] += position_var_m2
 
+    def move_to(self, position_m: Vector3) -> None:
+        """Take a position as it is: five fixes in a row have said that the old one was wrong."""
+        self.value[:3] = position_m
+
+    def turn(self, yaw_rad: float) -> None:
+        """Turn about the vertical: north has become known, or better known."""
+        self.value[5] = wrap_rad(self.value[5] + yaw_rad)
+
     def innovation(self, position_m: Vector3 | None, rotation_rad: Vector3) -> tuple[Vector3 | None, Vector3]:
         """Return y = z - H x, eq. 13, in its two parts; angles by the shorter way round."""
         x, y, z, roll, pitch, yaw = self.value

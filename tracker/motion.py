@@ -1,8 +1,11 @@
-"""Who chooses the motion model of the next prediction: one interface for constant and fuzzy."""
+"""Who chooses the motion model of the next prediction: one interface for constant, fuzzy and interacting models."""
 
-from typing import Protocol
+from typing import Protocol, Self
 
+from tracker.fusion import FusionFilter, FusionSettings
 from tracker.fuzzy import FuzzyController, MotionModel
+from tracker.imm import InteractingFilter
+from tracker.measurements import Vector3
 
 #: The paper's constant motion model "correspond[s] to P1R1".
 CONSTANT = MotionModel(1, 1)
@@ -10,25 +13,78 @@ CONSTANT = MotionModel(1, 1)
 AT_REST = MotionModel(0, 0)
 
 
+class MotionFilter(Protocol):
+    """What the paper's system asks of its filter: one of twelve states, or several that interact."""
+
+    @classmethod
+    def start(
+        cls, settings: FusionSettings, position_m: Vector3, rotation_rad: Vector3, position_var_m2: Vector3
+    ) -> Self:
+        """Return a filter at its first measurement."""
+        ...
+
+    @property
+    def var_value(self) -> list[float]:
+        """Variances of P and R."""
+        ...
+
+    @property
+    def position_m(self) -> Vector3:
+        """P in the site frame."""
+        ...
+
+    @property
+    def rpy_rad(self) -> Vector3:
+        """R: roll, pitch, yaw."""
+        ...
+
+    def predict(self, dt_s: float, model: MotionModel) -> None:
+        """Apply F with the model's coefficients."""
+        ...
+
+    def innovation(self, position_m: Vector3 | None, rotation_rad: Vector3) -> tuple[Vector3 | None, Vector3]:
+        """Return z - H x in its two parts."""
+        ...
+
+    def update(self, y_p_m: Vector3 | None, y_r_rad: Vector3, position_var_m2: Vector3) -> None:
+        """Take an innovation in."""
+        ...
+
+    def widen(self, position_var_m2: float) -> None:
+        """Doubt the position."""
+        ...
+
+    def move_to(self, position_m: Vector3) -> None:
+        """Take a position as it is."""
+        ...
+
+    def turn(self, yaw_rad: float) -> None:
+        """Turn about the vertical."""
+        ...
+
+
 class MotionSelector(Protocol):
-    """Chooses velocity coefficients from the innovation of the update before."""
+    """Chooses velocity coefficients after an update, and says which filter they are for."""
+
+    filter_kind: type[MotionFilter]
 
     @property
     def first(self) -> MotionModel:
         """The model of the first prediction."""
         ...
 
-    def following(self, y_p_m: float, y_r_rad: float, model: MotionModel) -> MotionModel:
-        """Return the model of the next prediction."""
+    def following(self, y_p_m: float, y_r_rad: float, filter_: MotionFilter, model: MotionModel) -> MotionModel:
+        """Return the model of the next prediction: by the size of the innovation, the filter after it, the model before it."""
         ...
 
 
 class ConstantMotion:
     """CMM: position and rotation always move on with their velocities."""
 
+    filter_kind: type[MotionFilter] = FusionFilter
     first = CONSTANT
 
-    def following(self, y_p_m: float, y_r_rad: float, model: MotionModel) -> MotionModel:
+    def following(self, y_p_m: float, y_r_rad: float, filter_: MotionFilter, model: MotionModel) -> MotionModel:
         """Return P1R1, whatever the innovation."""
         return CONSTANT
 
@@ -36,11 +92,23 @@ class ConstantMotion:
 class FuzzyMotion:
     """FAMM: the fuzzy controller chooses among nine."""
 
+    filter_kind: type[MotionFilter] = FusionFilter
     first = AT_REST
 
     def __init__(self, controller: FuzzyController | None = None) -> None:
         self._controller = controller or FuzzyController()
 
-    def following(self, y_p_m: float, y_r_rad: float, model: MotionModel) -> MotionModel:
+    def following(self, y_p_m: float, y_r_rad: float, filter_: MotionFilter, model: MotionModel) -> MotionModel:
         """Return the consequent of the strongest rule."""
         return self._controller.next_model(y_p_m, y_r_rad, model)
+
+
+class InteractingMotion:
+    """IMM: nothing is chosen, all nine run; the likeliest is named."""
+
+    filter_kind: type[MotionFilter] = InteractingFilter
+    first = CONSTANT
+
+    def following(self, y_p_m: float, y_r_rad: float, filter_: MotionFilter, model: MotionModel) -> MotionModel:
+        """Return the likeliest model."""
+        return filter_.most_likely if isinstance(filter_, InteractingFilter) else model

@@ -23,7 +23,7 @@ from tracker.camera_path import CameraPath
 from tracker.course import CourseOverGround
 from tracker.estimator import Innovation, Origin, Pose, Snapshot
 from tracker.fixes import FASTEST_M_S, Fix, FixGate, variance_m2
-from tracker.fusion import FusionFilter, FusionSettings
+from tracker.fusion import FusionSettings
 from tracker.geodesy import SiteFrame, gravity_m_s2
 from tracker.geometry import (
     conjugate,
@@ -31,7 +31,6 @@ from tracker.geometry import (
     multiply,
     normalise,
     rpy_from_wxyz,
-    wrap_rad,
     wxyz_from_rpy,
     wxyz_from_yaw,
 )
@@ -50,7 +49,7 @@ from tracker.measurements import (
     VisualMotion,
     Wxyz,
 )
-from tracker.motion import MotionSelector
+from tracker.motion import MotionFilter, MotionSelector
 from tracker.rig import Rig
 
 
@@ -169,7 +168,7 @@ class PaperEstimator:
         s = self._state
         if s.fix is None:
             return
-        s.filter = FusionFilter.start(
+        s.filter = self._selector.filter_kind.start(
             self._settings.fusion, self._measured_position(t_ns)[0], self._measured_rotation(t_ns), s.fix.var_m2
         )
         s.cycle_ns = t_ns
@@ -187,15 +186,15 @@ class PaperEstimator:
         s.filter.update(y_p, y_r, var_P)
         if y_p is not None:
             s.innovations.append(Innovation(t_ns, y_p, y_r, str(s.model)))
-            s.model = self._selector.following(hypot(*y_p), hypot(*y_r), s.model)
+            s.model = self._selector.following(hypot(*y_p), hypot(*y_r), s.filter, s.model)
         s.cycle_ns = t_ns
 
-    def _turn_to_north(self, filter_: FusionFilter) -> None:
+    def _turn_to_north(self, filter_: MotionFilter) -> None:
         """When north becomes known, or better known, the whole past was turned by a constant: that is no innovation."""
         s = self._state
         if s.heading.yaw_offset_rad != s.filter_yaw_offset_rad:
             turn_rad = (s.heading.yaw_offset_rad or 0.0) - (s.filter_yaw_offset_rad or 0.0)
-            filter_.value[5] = wrap_rad(filter_.value[5] + turn_rad)
+            filter_.turn(turn_rad)
             s.filter_yaw_offset_rad = s.heading.yaw_offset_rad
 
     def _measured_rotation(self, t_ns: int) -> Vector3:
@@ -248,7 +247,7 @@ class PaperEstimator:
             if s.filter is not None:
                 s.filter.widen(self._drift_var_m2(fix.t_ns))
                 if insisted:
-                    s.filter.value[:3] = p
+                    s.filter.move_to(p)
         var_m2 = variance_m2(fix, self._settings.gps_floor_m, self._settings.gps_var_m2)
         s.fix = Fix(fix.t_ns, fix.t_recv_ns, p, var_m2, self._path_m(fix.t_ns), s.camera.near(fix.t_ns))
         if s.velocity is None or fix.t_ns - s.velocity.t_ns > self._settings.velocity_held_s * 1e9:
@@ -375,7 +374,7 @@ class _State:
         self.attitude = Madgwick()
         self.heading = StartHeading(declination_rad)
         self.path = InertialPath(gravity)
-        self.filter: FusionFilter | None = None
+        self.filter: MotionFilter | None = None
         self.filter_yaw_offset_rad: float | None = None
         self.model = selector.first
         self.cycle_ns = 0

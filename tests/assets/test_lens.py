@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -17,6 +17,16 @@ SLIGHT = st.floats(-0.003, 0.003)
 
 def pixels() -> NDArray[np.float64]:
     return np.stack(np.meshgrid(np.arange(64.0), np.arange(48.0)), axis=-1).reshape(-1, 2)
+
+
+def covers_the_picture(k: tuple[float, ...]) -> bool:
+    """Return whether the polynomial grows up to the picture's corners: one that folds before has no ray for them."""
+    k1, k2, _, _, k3, k4, k5, k6 = (*k, 0.0, 0.0, 0.0)[:8]
+    r2 = np.linspace(0.0, 1.5, 301) ** 2
+    bent = np.sqrt(r2) * (1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1.0 + r2 * (k4 + r2 * (k5 + r2 * k6)))
+    folds = np.nonzero(np.diff(bent) <= 0.0)[0]
+    corner = float(np.hypot(*((pixels() - (32.3, 23.1)) / (52.0, 51.0)).T).max())
+    return float(bent[folds[0]] if len(folds) else bent[-1]) > corner + 0.05
 
 
 def projected(lens: Lens) -> NDArray[np.float64]:
@@ -35,12 +45,14 @@ def projected(lens: Lens) -> NDArray[np.float64]:
 @given(k1=MILD, k2=MILD, p1=SLIGHT, p2=SLIGHT, k3=MILD)
 def test_plumb_bob_is_opencvs(k1: float, k2: float, p1: float, p2: float, k3: float) -> None:
     lens = Lens(PINHOLE, "plumb_bob", (k1, k2, p1, p2, k3))
+    assume(covers_the_picture(lens.distortion))
     assert projected(lens) == pytest.approx(pixels(), abs=0.01)
 
 
 @settings(max_examples=40, deadline=None)
 @given(k=st.tuples(MILD, MILD, SLIGHT, SLIGHT, MILD, MILD, MILD, MILD))
 def test_rational_polynomial_is_opencvs(k: tuple[float, ...]) -> None:
+    assume(covers_the_picture(k))
     assert projected(Lens(PINHOLE, "rational_polynomial", k)) == pytest.approx(pixels(), abs=0.01)
 
 

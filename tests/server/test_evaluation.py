@@ -43,14 +43,15 @@ def _printed(evaluation: Evaluation) -> str:
 
 
 def test_all_that_the_sensors_allow(walk: Path, tmp_path: Path) -> None:
-    """Three estimators run; the two with a camera say what is missing; the files are what other programs read."""
+    """All without a camera run; those with one say what is missing; the files are what other programs read."""
     evaluation = evaluate([walk], (), tmp_path / "poses", _nothing)
-    assert [row["estimator"] for row in evaluation.runs] == ["gps-imu/cmm", "gps-imu/famm", "truth"]
+    assert [row["estimator"] for row in evaluation.runs] == ["gps-imu/cmm", "gps-imu/famm", "gps-imu/imm", "truth"]
     write_json(evaluation, tmp_path / "figures.json")
     found = json.loads((tmp_path / "figures.json").read_text())
     assert [(m["estimator"], m["missing"]) for m in found["missing"]] == [
         ("camera-gps-imu/cmm", "no camera"),
         ("camera-gps-imu/famm", "no camera"),
+        ("camera-gps-imu/imm", "no camera"),
     ]
     assert found["runs"] == evaluation.runs
     table = _printed(evaluation)
