@@ -60,7 +60,8 @@ class Page {
       element("credit", HTMLElement).textContent = site.attribution;
       const levels = site.models["roman"];
       if (!levels) throw new Error("no model named roman");
-      const square = await Square.load(levels, GROUND_SHARE);
+      const affordable = this.composite.drawsInSoftware ? levels.slice(-1) : levels;
+      const square = await Square.load(affordable, GROUND_SHARE);
       for (const { id, defaultVariant } of site.monuments)
         if (defaultVariant !== null) square.showVariant(id, defaultVariant);
       this.composite.show(square);

@@ -125,6 +125,15 @@ export class Composite {
     this.camera.matrixAutoUpdate = false;
   }
 
+  /** Whether there is no graphics card: then only the coarsest level can keep up with the pictures. */
+  get drawsInSoftware(): boolean {
+    const gl = this.renderer.getContext();
+    const named = gl.getExtension("WEBGL_debug_renderer_info");
+    return /swiftshader|llvmpipe|software|basic render/i.test(
+      String(gl.getParameter(named ? named.UNMASKED_RENDERER_WEBGL : gl.RENDERER)),
+    );
+  }
+
   /** Draw this square from now on. */
   show(square: Square): void {
     this.square = square;
