@@ -1,7 +1,8 @@
 """What surrounds the ruins today: mountains, paths, stacked blocks, stones, grass, shrubs and trees."""
 
-from collections.abc import Callable
-from typing import TypeAlias
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias
 
 import numpy as np
 import shapely
@@ -13,14 +14,50 @@ from assets.building import drawn_many, transforms
 from assets.scene import Instanced
 from assets.shape import Shape
 from assets.site import Site
-from assets.terrain import Terrain
+from assets.terrain import Terrain, numbers
 from assets.textures import noise
 
 CLEAR_M = 4.0
 """Nothing stands nearer to a way that visitors take."""
 FAR_RADII_M = np.array([250.0, 420.0, 600.0, 850.0, 1150.0, 1500.0, 2000.0, 2700.0])
-SQUARE_UV = (-104.0, 49.0, -55.0, 2.0)
-"""u from and to, v from and to."""
+Box: TypeAlias = tuple[float, float, float, float]
+"""u from and to, v from and to, metres in the site's own axes."""
+PLANTS = ("bushes", "slope_bushes", "trees", "cypresses")
+
+
+@dataclass(frozen=True)
+class Landscape:
+    """`[landscape]` of site.toml; a site without one has stones and grass along its ways, and nothing else grows there."""
+
+    square_uv_m: Box
+    """The open place, with stacked blocks at its edges."""
+    hills: Array
+    """(n, 4) azimuth in degrees, spread in radians, height and reach in metres of what stands around."""
+    plants: Mapping[str, Array]
+    """(n, 5) how many, and the box, for each of `PLANTS`."""
+    far_bushes_uv_m: Array
+    """(n, 4) boxes."""
+
+    @classmethod
+    def of(cls, site: Site) -> "Landscape":
+        """Read it; `SiteError` where it holds something other than the numbers it should."""
+        table = site.landscape
+        if "square_uv_m" in table:
+            u0, u1, v0, v1 = numbers(table, "landscape", "square_uv_m", (4,)).tolist()
+        else:
+            uv = np.array([corner for way in site.ways for corner in way] or [(0.0, 0.0)])
+            uv = uv @ agora_from_site(site.azimuth_rad).T
+            (u0, v0), (u1, v1) = uv.min(axis=0).tolist(), uv.max(axis=0).tolist()
+        return cls(
+            (u0, u1, v0, v1),
+            _rows(table, "hills", 4),
+            {k: _rows(table, k, 5) for k in PLANTS},
+            _rows(table, "far_bushes", 4),
+        )
+
+
+def _rows(table: Mapping[str, Any], key: str, width: int) -> Array:
+    return numbers(table, "landscape", key, (None, width)) if key in table else np.zeros((0, width))
 
 
 def walked(site: Site) -> shapely.Geometry:
@@ -34,7 +71,7 @@ class Planting:
     """Finds places on the ground for things, clear of ways and of what stands."""
 
     def __init__(self, site: Site, terrain: Terrain, rng: np.random.Generator) -> None:
-        self.terrain, self.rng = terrain, rng
+        self.terrain, self.rng, self.land = terrain, rng, Landscape.of(site)
         self._axes = agora_from_site(site.azimuth_rad)
         self._walked = walked(site)
         standing = [Polygon(m.footprint.corners_en_m) for m in site.shown_in("today") if m.kind != "paving"]
@@ -42,7 +79,7 @@ class Planting:
         shapely.prepare(self._walked)
         shapely.prepare(self._standing)
 
-    def places(self, count: int, box_uv: tuple[float, float, float, float], clear_m: float, off_m: float) -> Array:
+    def places(self, count: int, box_uv: Box, clear_m: float, off_m: float) -> Array:
         """Return at most `count` points (n, 3) on the ground of a box, `clear_m` off the ways, `off_m` off monuments."""
         u0, u1, v0, v1 = box_uv
         uv = np.stack([self.rng.uniform(u0, u1, count), self.rng.uniform(v0, v1, count)], -1)
@@ -53,20 +90,15 @@ class Planting:
         return np.column_stack([en, self.terrain.ground_z_m(en[:, 0], en[:, 1])])[free]
 
 
-def mountains(terrain: Terrain) -> Shape:
-    """Return the hills beyond the terrain: Panayirdag in the north, Bulbuldag in the south, lower ground east and west."""
+def mountains(planting: Planting) -> Shape:
+    """Return the hills beyond the terrain."""
+    terrain = planting.terrain
     azimuth = np.linspace(0.0, 2.0 * np.pi, 121)
     east, north = (FAR_RADII_M[:, None] * f(azimuth) for f in (np.sin, np.cos))
     rough = noise(301, 128, 2, 30, 1.1)
     bumps = rough[(np.arange(8) * 13 % 128)[:, None], np.arange(121)[None] % 120]
-    lobes = (
-        (12.0, 0.62, 95.0, 650.0),
-        (200.0, 0.75, 260.0, 1100.0),
-        (95.0, 0.7, 70.0, 1500.0),
-        (320.0, 0.5, 25.0, 2000.0),
-    )
     rise = np.zeros_like(east)
-    for centre_deg, spread, height, reach in lobes:
+    for centre_deg, spread, height, reach in planting.land.hills:
         off = np.angle(np.exp(1j * (azimuth - np.radians(centre_deg))))
         near = np.clip((FAR_RADII_M - 330.0) / (reach - 330.0), 0.0, 1.6)
         rise += height * np.exp(-((off / spread) ** 2)) * (np.sin(np.minimum(near, 1.0) * np.pi / 2.0) ** 1.5)[:, None]
@@ -86,7 +118,7 @@ THINNED = (1, 3, 12)
 def grasses(planting: Planting, level: int) -> list[Instanced]:
     """Return tufts of dry grass all over, thickest in patches."""
     rng = np.random.default_rng(11)
-    u0, u1, v0, v1 = SQUARE_UV
+    u0, u1, v0, v1 = planting.land.square_uv_m
     inside = planting.places(2500, (u0, u1 + 6.0, v0 - 14.0, v1 + 18.0), 0.0, -1.0)
     around = planting.places(500, (u0 - 25.0, u1 + 30.0, v0 - 45.0, v1 + 70.0), 0.0, 0.3)
     everywhere = np.concatenate([inside, around])
@@ -99,7 +131,7 @@ def grasses(planting: Planting, level: int) -> list[Instanced]:
 def stones(planting: Planting, level: int) -> list[Instanced]:
     """Return small stones lying in the grass."""
     rng = np.random.default_rng(12)
-    u0, u1, v0, v1 = SQUARE_UV
+    u0, u1, v0, v1 = planting.land.square_uv_m
     places = planting.places(3400, (u0, u1 + 6.0, v0 - 14.0, v1), 0.0, 0.2)
     variants = []
     for _ in range(6):
@@ -124,7 +156,7 @@ def _strewn(
 def stacked(planting: Planting) -> Shape:
     """Return the architecture found here, laid up in rows and stacks at the edges of the square, and lying about."""
     shape, rng = Shape(), planting.rng
-    u0, u1, v0, v1 = SQUARE_UV
+    u0, u1, v0, v1 = planting.land.square_uv_m
     strips = (
         (u0, u1, v0 + 1.0, v0 + 9.0, 60),
         (u0, u1, v1 - 5.0, v1 - 1.0, 40),
@@ -136,54 +168,27 @@ def stacked(planting: Planting) -> Shape:
             rubble.stack(
                 shape, rng, x, y, z, -0.26 + float(rng.choice([0.0, np.pi / 2.0])) + float(rng.normal(0.0, 0.08))
             )
-    rubble.scatter(shape, rng, planting.places(420, SQUARE_UV, CLEAR_M + 0.6, 0.8), 1.0)
-    for place in planting.places(60, SQUARE_UV, CLEAR_M + 1.0, 1.2):
+    rubble.scatter(shape, rng, planting.places(420, planting.land.square_uv_m, CLEAR_M + 0.6, 0.8), 1.0)
+    for place in planting.places(60, planting.land.square_uv_m, CLEAR_M + 1.0, 1.2):
         part = rubble.lying_drum(float(rng.uniform(0.45, 0.8)), float(rng.uniform(0.8, 2.2)))
         shape.copies(part, place[None], rng.uniform(0.0, np.pi, 1))
-    for place in planting.places(30, SQUARE_UV, CLEAR_M, 1.2):
+    for place in planting.places(30, planting.land.square_uv_m, CLEAR_M, 1.2):
         shape.copies(rubble.drum(float(rng.uniform(0.5, 0.8)), float(rng.uniform(0.4, 1.5))), place[None])
     return shape
 
 
-Box: TypeAlias = tuple[float, float, float, float]
-_PLANTS: tuple[tuple[Callable[[np.random.Generator, int], Shape], float, tuple[tuple[int, Box], ...]], ...] = (
-    (plants.bush, 0.6, ((210, (-106.0, 60.0, -90.0, 4.0)), (50, (-108.0, 56.0, 3.0, 24.0)))),
-    (
-        plants.slope_bush,
-        0.6,
-        (
-            (330, (-150.0, 110.0, 22.0, 130.0)),
-            (330, (-170.0, 130.0, -150.0, -74.0)),
-            (200, (-260.0, -120.0, -110.0, 110.0)),
-            (160, (58.0, 200.0, -90.0, 90.0)),
-        ),
-    ),
-    (
-        plants.tree,
-        2.5,
-        (
-            (26, (-120.0, 120.0, 55.0, 130.0)),
-            (26, (-160.0, 120.0, -150.0, -78.0)),
-            (16, (58.0, 150.0, -60.0, 60.0)),
-            (12, (-270.0, -125.0, -110.0, 110.0)),
-        ),
-    ),
-    (
-        plants.cypress,
-        2.0,
-        (
-            (12, (-110.0, 90.0, 60.0, 115.0)),
-            (10, (-130.0, 110.0, -125.0, -80.0)),
-            (8, (62.0, 130.0, 22.0, 60.0)),
-        ),
-    ),
+_MAKERS: tuple[tuple[str, Callable[[np.random.Generator, int], Shape], float], ...] = (
+    ("bushes", plants.bush, 0.6),
+    ("slope_bushes", plants.slope_bush, 0.6),
+    ("trees", plants.tree, 2.5),
+    ("cypresses", plants.cypress, 2.0),
 )
-"""What grows: its maker, how far it keeps from monuments, and how many in which boxes of (u, v)."""
+"""What grows: its name in the data, its maker, how far it keeps from monuments."""
 
 
 def planted(planting: Planting, level: int) -> list[Instanced]:
     """Return shrubs and trees, none of them on a way; all are the same few, turned and scaled."""
-    found = [part for row in range(len(_PLANTS)) for part in _grown(planting, row, level)]
+    found = [part for row in range(len(_MAKERS)) for part in _grown(planting, row, level)]
     return found + _far_bushes(planting, level, 900)
 
 
@@ -195,7 +200,10 @@ def wooded(planting: Planting, level: int) -> list[Instanced]:
 
 def _grown(planting: Planting, row: int, level: int) -> list[Instanced]:
     """Plants of one row of the table."""
-    make, off_m, boxes = _PLANTS[row]
+    name, make, off_m = _MAKERS[row]
+    boxes = [(int(count), (u0, u1, v0, v1)) for count, u0, u1, v0, v1 in planting.land.plants[name].tolist()]
+    if not boxes:
+        return []
     variants = [make(np.random.default_rng(100 * row + k), level) for k in range(4)]
     rng = np.random.default_rng(30 + row)
     places = np.concatenate([planting.places(count, box, CLEAR_M + 1.5, off_m) for count, box in boxes])
@@ -205,8 +213,8 @@ def _grown(planting: Planting, row: int, level: int) -> list[Instanced]:
 def _far_bushes(planting: Planting, level: int, count: int) -> list[Instanced]:
     variants = [plants.far_bush(np.random.default_rng(40 + k), level) for k in range(4)]
     found = []
-    for i, place_box in enumerate(((-380.0, 300.0, 90.0, 330.0), (-380.0, 300.0, -320.0, -120.0))):
-        places = planting.places(count, place_box, 0.0, 1.0)
+    for i, (u0, u1, v0, v1) in enumerate(planting.land.far_bushes_uv_m.tolist()):
+        places = planting.places(count, (u0, u1, v0, v1), 0.0, 1.0)
         found += _strewn(variants, places, np.random.default_rng(50 + i), (1.3, 3.6 + i), 1)
     return found
 

@@ -250,6 +250,8 @@ class Site:
     """What visitors look at: points at the height where they do so."""
     terrain: Mapping[str, Any]
     """The ground's description as `assets.terrain` reads it."""
+    landscape: Mapping[str, Any]
+    """What stands and grows around, as `assets.landscape` reads it; empty where the site has none."""
     monuments: tuple[Monument, ...]
 
     def monument(self, monument_id: str) -> Monument:

@@ -69,9 +69,10 @@ def build_roman(
         progress((i + 1) / len(shown) * 0.8)
     planting = landscape.Planting(site, terrain, np.random.default_rng(3))
     nodes += [
-        Node("mountains", landscape.mountains(terrain).meshes(Place.at(0.0, 0.0, 0.0)), GROUND | {"role": "backdrop"}),
-        Node("plants", [], GROUND | {"role": "plant"}, landscape.wooded(planting, level)),
+        Node("mountains", landscape.mountains(planting).meshes(Place.at(0.0, 0.0, 0.0)), GROUND | {"role": "backdrop"}),
     ]
+    if wood := landscape.wooded(planting, level):
+        nodes.append(Node("plants", [], GROUND | {"role": "plant"}, wood))
     used = dict.fromkeys(name for node in nodes for name in node.materials)
     scene = Scene(nodes, {name: MATERIALS[name].paint() for name in used})
     progress(1.0)

@@ -77,6 +77,7 @@ def load_site(folder: Path) -> Site:
         ways=tuple(points(top.file, f"ways[{i}]", way) for i, way in enumerate(top.get("ways", list))),
         sights=sights(top.file, "sights", top.get("sights", list)),
         terrain=top.get("terrain", dict),
+        landscape=top.get("landscape", dict) if "landscape" in top.values else {},
         monuments=tuple(read_monument(places.table(key), key, titles) for key in places.values),
     )
     check_monuments(places.file, site.monuments)

@@ -72,14 +72,24 @@ def build_terrain(site: Site) -> Terrain:
     Raises:
         SiteError: `[terrain]` of site.toml lacks something or holds something other than numbers.
     """
-    levels = _numbers(site.terrain, "levels", (None, 6))
-    u_extent, v_extent = _numbers(site.terrain, "u_extent_m", (2,)), _numbers(site.terrain, "v_extent_m", (2,))
-    fine, coarse = _numbers(site.terrain, "fine_step_m", ()), _numbers(site.terrain, "coarse_step_m", ())
-    u_m = _lines(levels[:, 0:2], u_extent, _numbers(site.terrain, "fine_u_m", (2,)), float(fine), float(coarse))
-    v_m = _lines(levels[:, 2:4], v_extent, _numbers(site.terrain, "fine_v_m", (2,)), float(fine), float(coarse))
+    levels = numbers(site.terrain, "terrain", "levels", (None, 6))
+    u_extent, v_extent = (
+        numbers(site.terrain, "terrain", "u_extent_m", (2,)),
+        numbers(site.terrain, "terrain", "v_extent_m", (2,)),
+    )
+    fine, coarse = (
+        numbers(site.terrain, "terrain", "fine_step_m", ()),
+        numbers(site.terrain, "terrain", "coarse_step_m", ()),
+    )
+    u_m = _lines(
+        levels[:, 0:2], u_extent, numbers(site.terrain, "terrain", "fine_u_m", (2,)), float(fine), float(coarse)
+    )
+    v_m = _lines(
+        levels[:, 2:4], v_extent, numbers(site.terrain, "terrain", "fine_v_m", (2,)), float(fine), float(coarse)
+    )
     u, v = np.meshgrid(u_m, v_m, indexing="ij")
-    relief = float(_numbers(site.terrain, "relief_m", ()))
-    known = _numbers(site.terrain, "relief_beyond_m", (4,))
+    relief = float(numbers(site.terrain, "terrain", "relief_m", ()))
+    known = numbers(site.terrain, "terrain", "relief_beyond_m", (4,))
     return Terrain(site.azimuth_rad, u_m, v_m, _blend(levels, u, v) + relief * _relief(known, u, v))
 
 
@@ -92,20 +102,20 @@ def _relief(known: Array, u: Array, v: Array) -> Array:
     return np.asarray(field[i, j] * np.clip(away / RELIEF_GROWS_M, 0.0, 1.0))
 
 
-def _numbers(table: Mapping[str, Any], key: str, shape: tuple[int | None, ...]) -> Array:
-    """A field of `[terrain]` as an array of that shape (None: any length over 0)."""
+def numbers(table: Mapping[str, Any], name: str, key: str, shape: tuple[int | None, ...]) -> Array:
+    """Return a field of site.toml's table `name` as an array of that shape (None: any length over 0)."""
     wanted = " by ".join("n" if n is None else str(n) for n in shape) or "one"
     try:
         values: NDArray[np.float64] = np.array(table[key], dtype=np.float64)
     except KeyError as exc:
-        raise SiteError(f"site.toml has no 'terrain.{key}'; add it ({wanted} numbers).") from exc
+        raise SiteError(f"site.toml has no '{name}.{key}'; add it ({wanted} numbers).") from exc
     except (TypeError, ValueError) as exc:
-        raise SiteError(f"site.toml: 'terrain.{key}' must hold {wanted} numbers.") from exc
+        raise SiteError(f"site.toml: '{name}.{key}' must hold {wanted} numbers.") from exc
     fits = values.ndim == len(shape) and all(n is None or n == m for n, m in zip(shape, values.shape, strict=True))
     if not fits or values.size == 0 or not np.isfinite(values).all():
-        raise SiteError(f"site.toml: 'terrain.{key}' must hold {wanted} numbers.")
+        raise SiteError(f"site.toml: '{name}.{key}' must hold {wanted} numbers.")
     if key.endswith("step_m") and not values > 0.0:
-        raise SiteError(f"site.toml: 'terrain.{key}' must be more than 0 metres.")
+        raise SiteError(f"site.toml: '{name}.{key}' must be more than 0 metres.")
     return values
 
 

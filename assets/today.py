@@ -86,14 +86,15 @@ def _surroundings(site: Site, terrain: Terrain, level: int) -> list[Node]:
         closed = np.array([*way, way[0]])
         part = landscape.path(terrain, np.random.default_rng(2), closed, PATH_WIDTH_M)
         paths.copies(part, np.zeros((1, 3)))
-    return [
-        Node("mountains", landscape.mountains(terrain).meshes(SITE), LAND | {"role": "backdrop"}),
+    nodes = [
+        Node("mountains", landscape.mountains(planting).meshes(SITE), LAND | {"role": "backdrop"}),
         Node("paths", paths.meshes(SITE), LAND),
         Node("stacked_blocks", landscape.stacked(planting).meshes(SITE), LAND | {"role": "building"}),
         Node("stones", [], LAND, landscape.stones(planting, level)),
         Node("grass", [], LAND | {"role": "plant"}, landscape.grasses(planting, level)),
         Node("plants", [], LAND | {"role": "plant"}, landscape.planted(planting, level)),
     ]
+    return [node for node in nodes if node.meshes or node.instances]
 
 
 def _ruin(monument: Monument, terrain: Terrain, level: int) -> list[Node]:
