@@ -82,11 +82,7 @@ class FusionFilter:
 
     def innovation(self, position_m: Vector3 | None, rotation_rad: Vector3) -> tuple[Vector3 | None, Vector3]:
         """Return y = z - H x, eq. 13, in its two parts; angles by the shorter way round."""
-        x, y, z, roll, pitch, yaw = self.value
-        y_r = (wrap_rad(rotation_rad[0] - roll), wrap_rad(rotation_rad[1] - pitch), wrap_rad(rotation_rad[2] - yaw))
-        if position_m is None:
-            return None, y_r
-        return (position_m[0] - x, position_m[1] - y, position_m[2] - z), y_r
+        return innovation(self.value, position_m, rotation_rad)
 
     def update(self, y_p_m: Vector3 | None, y_r_rad: Vector3, position_var_m2: Vector3) -> None:
         """Take an innovation in, eq. 12. Without a positional part only R and Omega are updated."""
@@ -145,3 +141,12 @@ def transition(dt_s: float, model: MotionModel) -> Matrix:
         F[axis, axis + 3] = model.i * dt_s
         F[axis + 6, axis + 9] = model.j * dt_s
     return F
+
+
+def innovation(value: list[float], position_m: Vector3 | None, rotation_rad: Vector3) -> tuple[Vector3 | None, Vector3]:
+    """Return z - H x for the six values of H x, eq. 13, in its two parts; angles by the shorter way round."""
+    x, y, z, roll, pitch, yaw = value
+    y_r = (wrap_rad(rotation_rad[0] - roll), wrap_rad(rotation_rad[1] - pitch), wrap_rad(rotation_rad[2] - yaw))
+    if position_m is None:
+        return None, y_r
+    return (position_m[0] - x, position_m[1] - y, position_m[2] - z), y_r

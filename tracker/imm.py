@@ -13,7 +13,7 @@ Reference:
 from dataclasses import dataclass, field
 from math import exp, log
 
-from tracker.fusion import FusionFilter, FusionSettings
+from tracker.fusion import FusionFilter, FusionSettings, innovation
 from tracker.fuzzy import INDICES, Index, MotionModel
 from tracker.geometry import wrap_rad
 from tracker.measurements import Vector3
@@ -53,11 +53,7 @@ class InteractingFilter:
 
     def innovation(self, position_m: Vector3 | None, rotation_rad: Vector3) -> tuple[Vector3 | None, Vector3]:
         """Return z minus the combined prediction, in its two parts."""
-        x, y, z, roll, pitch, yaw = self.value
-        y_r = (wrap_rad(rotation_rad[0] - roll), wrap_rad(rotation_rad[1] - pitch), wrap_rad(rotation_rad[2] - yaw))
-        if position_m is None:
-            return None, y_r
-        return (position_m[0] - x, position_m[1] - y, position_m[2] - z), y_r
+        return innovation(self.value, position_m, rotation_rad)
 
     def update(self, y_p_m: Vector3 | None, y_r_rad: Vector3, position_var_m2: Vector3) -> None:
         """Take an innovation of the combined prediction into each filter, and weigh the filters by how well they foresaw it."""
