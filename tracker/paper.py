@@ -96,6 +96,7 @@ class PaperEstimator:
         self._uses_camera = uses_camera
         self._selector = selector
         self._settings = settings or PaperSettings()
+        self._period_ns = round(self._settings.cycle_s * 1e9)
         self._site = SiteFrame(origin)
         self._R_body_cam = rig.T_body_cam[:3, :3]
         self._state = _State(gravity_m_s2(origin.lat_deg, origin.h_ellipsoid_m), declination_rad, selector)
@@ -159,7 +160,7 @@ class PaperEstimator:
             s.compass_waiting = None
         if s.filter is None:
             self._start(mean.t_ns)
-        elif mean.t_ns - s.cycle_ns >= self._settings.cycle_s * 1e9 - 1e6:
+        elif mean.t_ns >= s.due_ns:
             self._cycle(mean.t_ns)
 
     # -- the filter's cycle -------------------------------------------------------------------------------------------
@@ -171,7 +172,7 @@ class PaperEstimator:
         s.filter = self._selector.filter_kind.start(
             self._settings.fusion, self._measured_position(t_ns)[0], self._measured_rotation(t_ns), s.fix.var_m2
         )
-        s.cycle_ns = t_ns
+        s.cycle_ns, s.due_ns = t_ns, t_ns + self._period_ns
         s.filter_yaw_offset_rad = s.heading.yaw_offset_rad
 
     def _cycle(self, t_ns: int) -> None:
@@ -188,6 +189,8 @@ class PaperEstimator:
             s.innovations.append(Innovation(t_ns, y_p, y_r, str(s.model)))
             s.model = self._selector.following(hypot(*y_p), hypot(*y_r), s.filter, s.model)
         s.cycle_ns = t_ns
+        # on the beat, so that four a second stay four; what comes after a silence begins a new one
+        s.due_ns = max(s.due_ns + self._period_ns, t_ns)
 
     def _turn_to_north(self, filter_: MotionFilter) -> None:
         """When north becomes known, or better known, the whole past was turned by a constant: that is no innovation."""
@@ -378,6 +381,7 @@ class _State:
         self.filter_yaw_offset_rad: float | None = None
         self.model = selector.first
         self.cycle_ns = 0
+        self.due_ns = 0
         self.imu_ns: int | None = None
         self.imu_recv_ns = 0
         self.fix: Fix | None = None
