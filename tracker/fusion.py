@@ -80,17 +80,15 @@ class FusionFilter:
         """Turn about the vertical: north has become known, or better known."""
         self.value[5] = wrap_rad(self.value[5] + yaw_rad)
 
-    def innovation(self, position_m: Vector3 | None, rotation_rad: Vector3) -> tuple[Vector3 | None, Vector3]:
+    def innovation(self, position_m: Vector3, rotation_rad: Vector3) -> tuple[Vector3, Vector3]:
         """Return y = z - H x, eq. 13, in its two parts; angles by the shorter way round."""
         return innovation(self.value, position_m, rotation_rad)
 
-    def update(self, y_p_m: Vector3 | None, y_r_rad: Vector3, position_var_m2: Vector3) -> None:
-        """Take an innovation in, eq. 12. Without a positional part only R and Omega are updated."""
+    def update(self, y_p_m: Vector3, y_r_rad: Vector3, position_var_m2: Vector3) -> None:
+        """Take an innovation in, eq. 12."""
         rotation_var = self.settings.rotation_sigma_rad**2
-        if y_p_m is not None:
-            for axis in range(3):
-                self._update_axis(axis, y_p_m[axis], position_var_m2[axis])
         for axis in range(3):
+            self._update_axis(axis, y_p_m[axis], position_var_m2[axis])
             self._update_axis(axis + 3, y_r_rad[axis], rotation_var)
             self.value[axis + 3] = wrap_rad(self.value[axis + 3])
 
@@ -143,10 +141,8 @@ def transition(dt_s: float, model: MotionModel) -> Matrix:
     return F
 
 
-def innovation(value: list[float], position_m: Vector3 | None, rotation_rad: Vector3) -> tuple[Vector3 | None, Vector3]:
+def innovation(value: list[float], position_m: Vector3, rotation_rad: Vector3) -> tuple[Vector3, Vector3]:
     """Return z - H x for the six values of H x, eq. 13, in its two parts; angles by the shorter way round."""
     x, y, z, roll, pitch, yaw = value
     y_r = (wrap_rad(rotation_rad[0] - roll), wrap_rad(rotation_rad[1] - pitch), wrap_rad(rotation_rad[2] - yaw))
-    if position_m is None:
-        return None, y_r
     return (position_m[0] - x, position_m[1] - y, position_m[2] - z), y_r

@@ -51,11 +51,11 @@ class InteractingFilter:
         for c, member in zip(INDICES, self.members, strict=True):
             member.predict(dt_s, MotionModel(c, c))
 
-    def innovation(self, position_m: Vector3 | None, rotation_rad: Vector3) -> tuple[Vector3 | None, Vector3]:
+    def innovation(self, position_m: Vector3, rotation_rad: Vector3) -> tuple[Vector3, Vector3]:
         """Return z minus the combined prediction, in its two parts."""
         return innovation(self.value, position_m, rotation_rad)
 
-    def update(self, y_p_m: Vector3 | None, y_r_rad: Vector3, position_var_m2: Vector3) -> None:
+    def update(self, y_p_m: Vector3, y_r_rad: Vector3, position_var_m2: Vector3) -> None:
         """Take an innovation of the combined prediction into each filter, and weigh the filters by how well they foresaw it."""
         combined = self.value
         rotation_var = self.members[0].settings.rotation_sigma_rad ** 2
@@ -64,11 +64,9 @@ class InteractingFilter:
             off = [combined[axis] - member.value[axis] for axis in range(6)]
             own_r = (wrap_rad(y_r_rad[0] + off[3]), wrap_rad(y_r_rad[1] + off[4]), wrap_rad(y_r_rad[2] + off[5]))
             rotation_log[c] = sum(_log_density(own_r[i], member.var_value[i + 3] + rotation_var) for i in range(3))
-            own_p = None
-            if y_p_m is not None:
-                own_p = (y_p_m[0] + off[0], y_p_m[1] + off[1], y_p_m[2] + off[2])
-                spread = [member.var_value[i] + position_var_m2[i] for i in range(3)]
-                position_log[c] = sum(_log_density(own_p[i], spread[i]) for i in range(3))
+            own_p = (y_p_m[0] + off[0], y_p_m[1] + off[1], y_p_m[2] + off[2])
+            spread = [member.var_value[i] + position_var_m2[i] for i in range(3)]
+            position_log[c] = sum(_log_density(own_p[i], spread[i]) for i in range(3))
             member.update(own_p, own_r, position_var_m2)
         self.position_probability = _weighed(self.position_probability, position_log)
         self.rotation_probability = _weighed(self.rotation_probability, rotation_log)

@@ -42,11 +42,11 @@ class MotionFilter(Protocol):
         """Apply F with the model's coefficients."""
         ...
 
-    def innovation(self, position_m: Vector3 | None, rotation_rad: Vector3) -> tuple[Vector3 | None, Vector3]:
+    def innovation(self, position_m: Vector3, rotation_rad: Vector3) -> tuple[Vector3, Vector3]:
         """Return z - H x in its two parts."""
         ...
 
-    def update(self, y_p_m: Vector3 | None, y_r_rad: Vector3, position_var_m2: Vector3) -> None:
+    def update(self, y_p_m: Vector3, y_r_rad: Vector3, position_var_m2: Vector3) -> None:
         """Take an innovation in."""
         ...
 

@@ -56,7 +56,7 @@ def test_six_pairs_equal_twelve_states(walk: list[tuple[MotionModel, float, tupl
 
 def test_an_innovation_takes_the_shorter_way_round() -> None:
     ours = FusionFilter.start(FusionSettings(), (0.0, 0.0, 0.0), (0.0, 0.0, 3.1), VARIANCES)
-    _, y_r = ours.innovation(None, (0.0, 0.0, -3.1))
+    _, y_r = ours.innovation(ours.position_m, (0.0, 0.0, -3.1))
     assert y_r[2] == pytest.approx(2 * np.pi - 6.2)
 
 
@@ -67,12 +67,3 @@ def test_rest_keeps_the_place_and_double_speed_doubles_the_step() -> None:
         ours.predict(0.5, MotionModel(i, 1))  # type: ignore[arg-type]
         assert ours.value[0] == expected
         assert ours.rate[0] == 1.0
-
-
-def test_without_a_position_only_rotation_learns() -> None:
-    ours = FusionFilter.start(FusionSettings(), (1.0, 2.0, 3.0), (0.0, 0.0, 0.0), VARIANCES)
-    before = ours.covariance()[:6, :6]
-    ours.update(None, (0.1, 0.1, 0.1), VARIANCES)
-    assert ours.position_m == (1.0, 2.0, 3.0)
-    assert np.array_equal(ours.covariance()[:6, :6], before)
-    assert min(ours.rpy_rad) > 0.0

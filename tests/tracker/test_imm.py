@@ -92,17 +92,6 @@ def test_an_outlier_leaves_probabilities_that_are_some(jump_m: float, turn_rad: 
     assert np.isfinite(ours.value).all()
 
 
-def test_without_a_position_only_the_rotation_learns() -> None:
-    ours = InteractingFilter.start(SETTINGS, START_M, START_RAD, VARIANCES)
-    ours.predict(DT_S, CONSTANT)
-    before = list(ours.position_probability)
-    _, y_r = ours.innovation(None, (0.0, 0.0, 0.3))
-    ours.update(None, y_r, VARIANCES)
-    assert ours.position_probability == pytest.approx(before)
-    assert ours.rotation_probability != pytest.approx([1.0 / 3.0] * 3)
-    assert ours.position_m == pytest.approx(START_M)
-
-
 def test_a_move_and_a_turn_reach_every_member_across_the_wrap() -> None:
     ours = InteractingFilter.start(SETTINGS, START_M, (0.0, 0.0, 3.1), VARIANCES)
     ours.turn(0.1)

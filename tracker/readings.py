@@ -1,0 +1,22 @@
+"""How the paper is read where its text is silent, ambiguous or literally wrong: one settings object."""
+
+from dataclasses import dataclass
+
+from tracker.measurements import Vector3
+
+
+@dataclass(frozen=True)
+class SensorSettings:
+    """What the paper leaves open of its sensors."""
+
+    cycle_s: float = 0.25
+    """Its camera's four keyframes a second."""
+    gps_var_m2: Vector3 = (2.12**2, 2.12**2, 4.0**2)
+    """For a receiver that states none: 2.5 m CEP."""
+    gps_floor_m: float = 1.0
+    """A receiver that states less is not believed."""
+    fastest_walk_m_s: float = 2.0
+    outage_speed_m_s: float = 0.5
+    """An old fix is off by this much more for every second of its age."""
+    velocity_held_s: float = 3.0
+    """A receiver that has told no velocity for this long tells none: its fixes' displacements are used."""
