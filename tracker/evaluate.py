@@ -1,7 +1,7 @@
 """One log through one estimator, as live: every message when it arrived, a pose fifty times a second, and the score of it."""
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from math import hypot
 from time import perf_counter_ns
@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 from tracker import score
 from tracker.errors import MissingSensor
-from tracker.estimator import Innovation, Origin, Pose
+from tracker.estimator import Estimator, Innovation, Origin, Pose
 from tracker.estimators import Settings, build, missing_sensors
 from tracker.geodesy import SiteFrame
 from tracker.geomagnetism import declination_rad
 from tracker.log import Log
-from tracker.measurements import Frame, GpsFix, ImuSample, Measurement, Outcome, TruePose
+from tracker.measurements import Frame, GpsFix, ImuSample, Matrix, Measurement, Outcome, TruePose
+from tracker.paper import PaperEstimator
 from tracker.pipeline import Pipeline
 from tracker.score import Figures
 from tracker.vision import VisionFrontEnd
@@ -43,6 +44,8 @@ class Run:
     rejected: Counter[str] = field(default_factory=Counter)
     skipped: Counter[str] = field(default_factory=Counter)
     vision_estimates: int = 0
+    state_covariance: Matrix | None = None
+    """(12, 12), the paper's Sigma in its order (P, V, R, Omega): the mean over the run, sampled once a second."""
     wall_s: float = 0.0
 
 
@@ -101,23 +104,42 @@ def run(
     pipeline = make_pipeline(name, log, origin, settings)
     info = log.info
     result = Run(log.name, name, info.t_start_ns, info.duration_s, origin, info.truth_origin)
+    follow(pipeline, log.messages(camera=pipeline.estimator.uses_camera), result, progress)
+    result.skipped = log.skipped
+    return result
+
+
+def follow(
+    pipeline: Pipeline,
+    measurements: Iterable[Measurement],
+    result: Run,
+    progress: Callable[[float], None] = lambda done: None,
+) -> None:
+    """Feed measurements, in order of arrival, and write into `result` what comes out."""
     began_ns = perf_counter_ns()
-    for due_ns, measurement in _ticks(log.messages(camera=pipeline.estimator.uses_camera), info.t_start_ns):
+    sigmas: list[Matrix] = []
+    for due_ns, measurement in _ticks(measurements, result.t_start_ns):
         if measurement is None:
             pose = pipeline.predict(due_ns)
             if pose is not None:
                 result.poses.append(pose)
-            if (due_ns - info.t_start_ns) % 1_000_000_000 < _PERIOD_NS:
-                progress((due_ns - info.t_start_ns) * 1e-9 / max(info.duration_s, 1e-9))
+            if (due_ns - result.t_start_ns) % 1_000_000_000 < _PERIOD_NS:
+                progress((due_ns - result.t_start_ns) * 1e-9 / max(result.duration_s, 1e-9))
+                sigmas += _state_covariance(pipeline.estimator)
             continue
         _feed(pipeline, measurement, result)
     result.wall_s = (perf_counter_ns() - began_ns) * 1e-9
     result.innovations += pipeline.innovations()
-    result.rejected, result.skipped = pipeline.rejected, log.skipped
-    return result
+    result.rejected = pipeline.rejected
+    result.state_covariance = np.mean(sigmas, axis=0) if sigmas else None
 
 
-def _ticks(messages: Iterator[Measurement], start_ns: int) -> Iterator[tuple[int, Measurement | None]]:
+def _state_covariance(estimator: Estimator) -> list[Matrix]:
+    Sigma = estimator.state_covariance() if isinstance(estimator, PaperEstimator) else None
+    return [] if Sigma is None else [Sigma]
+
+
+def _ticks(messages: Iterable[Measurement], start_ns: int) -> Iterator[tuple[int, Measurement | None]]:
     """Yield the messages, and between them (t, None) every 20 ms, after all that had arrived by t."""
     due_ns = start_ns + _PERIOD_NS
     for measurement in messages:

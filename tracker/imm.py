@@ -13,10 +13,12 @@ Reference:
 from dataclasses import dataclass, field
 from math import exp, log
 
+import numpy as np
+
 from tracker.fusion import FusionFilter, FusionSettings, innovation
 from tracker.fuzzy import INDICES, Index, MotionModel
 from tracker.geometry import wrap_rad
-from tracker.measurements import Vector3
+from tracker.measurements import Matrix, Vector3
 
 POSITION, ROTATION = (0, 1, 2), (3, 4, 5)
 #: Probability that an index stays what it is from one cycle to the next; the two others share the rest.
@@ -128,6 +130,15 @@ class InteractingFilter:
         """R: roll, pitch, yaw."""
         roll, pitch, yaw = self.value[3:]
         return (roll, pitch, yaw)
+
+    def covariance(self) -> Matrix:
+        """Return Sigma of all together, (12, 12), in the paper's order."""
+        sigma = np.zeros((12, 12))
+        for axis in range(6):
+            v = axis if axis in POSITION else axis + 3
+            _, _, sigma[v, v], covar, sigma[v + 3, v + 3] = self._moments(axis, self._probability(axis))
+            sigma[v, v + 3] = sigma[v + 3, v] = covar
+        return sigma
 
     # -- mixing -------------------------------------------------------------------------------------------------------
 

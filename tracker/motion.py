@@ -5,7 +5,7 @@ from typing import Protocol, Self
 from tracker.fusion import FusionFilter, FusionSettings
 from tracker.fuzzy import FuzzyController, MotionModel
 from tracker.imm import InteractingFilter
-from tracker.measurements import Vector3
+from tracker.measurements import Matrix, Vector3
 
 #: The paper's constant motion model "correspond[s] to P1R1".
 CONSTANT = MotionModel(1, 1)
@@ -36,6 +36,10 @@ class MotionFilter(Protocol):
     @property
     def rpy_rad(self) -> Vector3:
         """R: roll, pitch, yaw."""
+        ...
+
+    def covariance(self) -> Matrix:
+        """Return Sigma, (12, 12), in the paper's order."""
         ...
 
     def predict(self, dt_s: float, model: MotionModel) -> None:

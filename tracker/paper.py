@@ -106,6 +106,10 @@ class PaperEstimator:
         position = (v + f + doubt for v, f in zip(var_value[:3], fix.var_m2, strict=True))
         return np.diag([*position, *(r + v for r, v in zip(rotation, var_value[3:], strict=True))])
 
+    def state_covariance(self) -> Matrix | None:
+        """Return the filter's own Sigma, (12, 12), in the paper's order; None before its start."""
+        return self._fusion.filter.covariance() if self._fusion.filter is not None else None
+
     def innovations(self) -> list[Innovation]:
         """Return the updates since the last call and forget them."""
         innovations, self._innovations = self._innovations, []

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.tracker.test_fusion import VARIANCES, H, noise
-from tracker.fusion import FusionSettings, transition
+from tracker.fusion import FusionFilter, FusionSettings, transition
 from tracker.fuzzy import INDICES, MOTION_MODELS, MotionModel
 from tracker.imm import STAYS, InteractingFilter
 from tracker.measurements import Matrix, Vector3
@@ -100,3 +100,14 @@ def test_a_move_and_a_turn_reach_every_member_across_the_wrap() -> None:
     assert ours.rpy_rad[2] == pytest.approx(3.2 - 2 * np.pi)
     assert ours.position_m == pytest.approx((7.0, 8.0, 9.0))
     assert len(INDICES) == len(ours.members)
+
+
+def test_the_joint_covariance_is_the_filters_when_they_agree() -> None:
+    ours = InteractingFilter.start(SETTINGS, START_M, START_RAD, VARIANCES)
+    alone = FusionFilter.start(SETTINGS, START_M, START_RAD, VARIANCES)
+    assert ours.covariance() == pytest.approx(alone.covariance())
+    for _ in range(5):
+        step(ours, np.array([1.0, -2.0, 0.5, 0.0, 0.0, 0.3]))
+    Sigma = ours.covariance()
+    assert [Sigma[v, v] for v in (0, 1, 2, 6, 7, 8)] == pytest.approx(ours.var_value)
+    assert np.linalg.eigvalsh(Sigma).min() > 0.0
