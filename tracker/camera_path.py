@@ -3,6 +3,8 @@
 from collections import deque
 from dataclasses import dataclass
 
+import numpy as np
+
 from tracker.measurements import Matrix, Vector3, VisualMotion
 from tracker.transformation import transformation
 
@@ -28,6 +30,8 @@ class CameraPath:
 
     def __init__(self) -> None:
         self._sights: deque[Sight] = deque(maxlen=_KEPT)
+        self.Tr: Matrix = np.eye(4)
+        """(4, 4), eq. 1, of the newest picture; the identity before the first."""
 
     @property
     def newest(self) -> Sight | None:
@@ -54,6 +58,6 @@ class CameraPath:
     def chain(self, motion: VisualMotion, key: Sight, length_m: float, R_site_cam: Matrix, path_m: Vector3) -> None:
         """Add a picture that stands off its keyframe by Tr, its translation of unit length made `length_m` long."""
         dx, dy, dz = motion.direction_key
-        Tr = transformation(motion.R_key_cam, (dx * length_m, dy * length_m, dz * length_m))
-        x, y, z = (float(p + v) for p, v in zip(key.p_m, key.R_site_cam @ Tr[:3, 3], strict=True))
+        self.Tr = transformation(motion.R_key_cam, (dx * length_m, dy * length_m, dz * length_m))
+        x, y, z = (float(p + v) for p, v in zip(key.p_m, key.R_site_cam @ self.Tr[:3, 3], strict=True))
         self._sights.append(Sight(motion.t_ns, (x, y, z), R_site_cam, path_m))

@@ -66,8 +66,11 @@ class SiteFrame:
 
     def site_from_geodetic(self, lat_deg: float, lon_deg: float, h_ellipsoid_m: float) -> Vector3:
         """Return (east, north, up) in metres."""
-        p_ecef_m = np.array(ecef_from_geodetic(lat_deg, lon_deg, h_ellipsoid_m))
-        east, north, up = self.R_site_ecef @ (p_ecef_m - self._p_ecef_site_m)
+        return self.site_from_ecef(ecef_from_geodetic(lat_deg, lon_deg, h_ellipsoid_m))
+
+    def site_from_ecef(self, p_ecef_m: Vector3) -> Vector3:
+        """Return (east, north, up) in metres of a point in ECEF."""
+        east, north, up = self.R_site_ecef @ (np.array(p_ecef_m) - self._p_ecef_site_m)
         return float(east), float(north), float(up)
 
     def geodetic_from_site(self, p_site_m: Vector3) -> tuple[float, float, float]:

@@ -1,8 +1,16 @@
 """How the paper is read where its text is silent, ambiguous or literally wrong: one settings object."""
 
 from dataclasses import dataclass
+from typing import Literal, TypeAlias
 
 from tracker.measurements import Vector3
+
+#: How "m_P = Tr x m_gps + m_imu" is read. `keyframe_local`: the fix, and the camera's displacement since the keyframe nearest
+#: to it. `literal_enu`, `literal_ecef`: the matrix times the fix as it stands, about the site's origin or the Earth's centre.
+PositionReading: TypeAlias = Literal["keyframe_local", "literal_enu", "literal_ecef"]
+#: How m_imu is read. `sane`: turned to the site's axes, gravity removed, integrated since the last fix. `literal`: four samples in
+#: the rig's own axes, their mean at rest subtracted.
+InertialReading: TypeAlias = Literal["sane", "literal"]
 
 
 @dataclass(frozen=True)
@@ -11,6 +19,8 @@ class SensorSettings:
 
     cycle_s: float = 0.25
     """Its camera's four keyframes a second."""
+    m_P: PositionReading = "keyframe_local"
+    m_imu: InertialReading = "sane"
     gps_var_m2: Vector3 = (2.12**2, 2.12**2, 4.0**2)
     """For a receiver that states none: 2.5 m CEP."""
     gps_floor_m: float = 1.0

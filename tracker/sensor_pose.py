@@ -1,7 +1,7 @@
 """What the three sensors say of the rig's pose: the paper's measurements m_P and m_R, one cycle after another.
 
 Nothing here knows of the filter. Where the text is silent or its literal equation breaks, these are the default readings,
-`keyframe_local` and `sane` (the others: `tracker/readings.py`):
+`keyframe_local` and `sane` (the others: `tracker/readings.py`, `tracker/literal.py`):
 
 - m_R is Madgwick's attitude turned to north at the start: once by a compass or magnetometer, else by the receiver's motion.
 - m_P is the last fix, carried on by the camera's motion since the keyframe nearest that fix (camera), and by the doubly
@@ -24,6 +24,7 @@ from tracker.geodesy import SiteFrame, gravity_m_s2
 from tracker.geometry import matrix_from_wxyz, multiply, rpy_from_wxyz, wxyz_from_yaw
 from tracker.heading import StartHeading
 from tracker.inertial import InertialPath
+from tracker.literal import FourSampleIntegral, m_P_ecef, m_P_enu
 from tracker.measurements import (
     CompassHeading,
     GpsFix,
@@ -61,6 +62,7 @@ class SensorPose:
         self._heading = StartHeading(declination_rad)
         self.path = InertialPath(gravity_m_s2(origin.lat_deg, origin.h_ellipsoid_m))
         """Where dead reckoning has gone; its displacements carry a fix, and a pose, to any time."""
+        self._four_samples = FourSampleIntegral()
         self._camera = CameraPath()
         self._course = CourseOverGround()
         self._gate = FixGate()
@@ -128,6 +130,7 @@ class SensorPose:
         gyro = (gx - bx, gy - by, gz - bz)
         if self._attitude.wxyz_level_body is None and hypot(*mean.accel_m_s2) < 1.0:
             return  # a rig in free fall has no up
+        self._four_samples.step(mean, calibrating=not self._calibration.finished)
         q = self._attitude.update(gyro, mean.accel_m_s2, mean.dt_s)
         self.path.step(MeanSample(mean.t_ns, mean.dt_s, gyro, mean.accel_m_s2), q, self._heading.yaw_offset_rad)
         if self._compass_waiting is not None:
@@ -156,16 +159,25 @@ class SensorPose:
         return multiply(wxyz_from_yaw(self._heading.yaw_offset_rad or 0.0), q)
 
     def _measured_position(self, t_ns: int, fix: Fix) -> tuple[Vector3, Vector3]:
-        """m_P and its variance: the fix, carried on to t_ns (`keyframe_local`: p_gps plus the camera's displacement)."""
-        here, sight, last = self._path_m(t_ns), fix.sight, self._camera.newest
-        if sight is not None and last is not None and last is not sight:
-            moved, inertial = _difference(last.p_m, sight.p_m), _difference(here, last.path_m)
-        else:
-            moved, inertial = (0.0, 0.0, 0.0), _difference(here, fix.path_m)
-        x, y, z = (p + m + i for p, m, i in zip(fix.p_site_m, moved, inertial, strict=True))
+        """m_P and its variance: the fix, carried on to t_ns."""
         more = self._drift_var_m2(t_ns)
         vx, vy, vz = fix.var_m2
-        return (x, y, z), (vx + more, vy + more, vz + more)
+        return self._m_P(t_ns, fix), (vx + more, vy + more, vz + more)
+
+    def _m_P(self, t_ns: int, fix: Fix) -> Vector3:
+        """Tr x m_gps + m_imu, in the reading that is asked for."""
+        here, sight, last = self._path_m(t_ns), fix.sight, self._camera.newest
+        seen = sight is not None and last is not None and last is not sight
+        reading, literal_imu = self._settings.m_P, self._settings.m_imu == "literal"
+        since_m = _difference(here, last.path_m if seen and last and reading == "keyframe_local" else fix.path_m)
+        m_imu_m = self._four_samples.m_imu_m if literal_imu else since_m
+        if reading == "literal_enu":
+            return m_P_enu(self._camera.Tr, fix.p_site_m, m_imu_m)
+        if reading == "literal_ecef":
+            return m_P_ecef(self._camera.Tr, fix.p_site_m, m_imu_m, self._site)
+        moved = _difference(last.p_m, sight.p_m) if seen and last and sight else (0.0, 0.0, 0.0)
+        x, y, z = (p + m + i for p, m, i in zip(fix.p_site_m, moved, m_imu_m, strict=True))
+        return (x, y, z)
 
     def _path_m(self, t_ns: int) -> Vector3:
         state = self.path.at(t_ns)
