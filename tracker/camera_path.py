@@ -51,13 +51,13 @@ class CameraPath:
         """Return a picture that nothing is chained to: at the end of the camera's path, carried on by the IMU."""
         last = self.newest
         if last is None:
-            return Sight(t_ns, (0.0, 0.0, 0.0), R_site_cam, path_m)
+            return Sight(t_ns, path_m, R_site_cam, path_m)
         x, y, z = (p + new - old for p, new, old in zip(last.p_m, path_m, last.path_m, strict=True))
         return Sight(t_ns, (x, y, z), R_site_cam, path_m)
 
-    def chain(self, motion: VisualMotion, key: Sight, length_m: float, R_site_cam: Matrix, path_m: Vector3) -> None:
-        """Add a picture that stands off its keyframe by Tr, its translation of unit length made `length_m` long."""
-        dx, dy, dz = motion.direction_key
-        self.Tr = transformation(motion.R_key_cam, (dx * length_m, dy * length_m, dz * length_m))
-        x, y, z = (float(p + v) for p, v in zip(key.p_m, key.R_site_cam @ self.Tr[:3, 3], strict=True))
-        self._sights.append(Sight(motion.t_ns, (x, y, z), R_site_cam, path_m))
+    def chain(self, motion: VisualMotion, key: Sight, moved_m: Vector3, R_site_cam: Matrix, path_m: Vector3) -> None:
+        """Add a picture that stands off its keyframe by `moved_m`, in site; Tr is that step in the keyframe's own axes."""
+        x, y, z = (key.R_site_cam.T @ np.array(moved_m)).tolist()
+        self.Tr = transformation(motion.R_key_cam, (x, y, z))
+        (kx, ky, kz), (mx, my, mz) = key.p_m, moved_m
+        self._sights.append(Sight(motion.t_ns, (kx + mx, ky + my, kz + mz), R_site_cam, path_m))

@@ -25,6 +25,8 @@ class SensorSettings:
     """For a receiver that states none: 2.5 m CEP."""
     gps_floor_m: float = 1.0
     """A receiver that states less is not believed."""
+    anchor_s: float = 10.0
+    """How long a fix is remembered where the camera's path carries it on: its white error averages out, its drift does not."""
     fastest_walk_m_s: float = 2.0
     outage_speed_m_s: float = 0.5
     """An old fix is off by this much more for every second of its age."""

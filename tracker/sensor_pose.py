@@ -4,15 +4,20 @@ Nothing here knows of the filter. Where the text is silent or its literal equati
 `keyframe_local` and `sane` (the others: `tracker/readings.py`, `tracker/literal.py`):
 
 - m_R is Madgwick's attitude turned to north at the start: once by a compass or magnetometer, else by the receiver's motion.
-- m_P is the last fix, carried on by the camera's motion since the keyframe nearest that fix (camera), and by the doubly
-  integrated specific force since then (what the camera has not covered, or everything without one).
+- m_P is the fix (one, or with a camera many), carried on by the camera's motion since then, and by the doubly integrated
+  specific force (what the camera has not covered, or everything without one).
 - v(0) of that integral is the receiver's own velocity, or what its fixes' displacements say where it tells none. While there
   are no fixes the walker goes on at their pace (`tracker/pace.py`), and m_P counts for less with every second.
-- The essential matrix gives no length, so the camera's step is as long as the IMU's over the same time.
+- The essential matrix gives no length, so the camera's step is as long as the IMU's over the same time. Its direction is used
+  where its parallax supports one, turned by what `VisualCourse` has found of the start heading's error, and every fix of the last
+  seconds says where the camera's path lies in the site (`Anchor`).
 """
 
 from math import hypot, isfinite
 
+import numpy as np
+
+from tracker.anchor import Anchor
 from tracker.attitude import Madgwick
 from tracker.calibration import MeanSample, RestCalibration, SampleMean
 from tracker.camera_path import CameraPath
@@ -40,9 +45,12 @@ from tracker.measurements import (
 )
 from tracker.readings import SensorSettings
 from tracker.rig import Rig
+from tracker.visual_course import VisualCourse
 
 #: A stamp that runs ahead of its arrival by more than this, since the one before, is a clock that leapt.
 _FASTEST_CLOCK_NS = 2_000_000_000
+#: A walker is faster than this, dead reckoning of one who stands is slower.
+_STILL_M_S = 0.3
 
 
 class SensorPose:
@@ -64,6 +72,8 @@ class SensorPose:
         """Where dead reckoning has gone; its displacements carry a fix, and a pose, to any time."""
         self._four_samples = FourSampleIntegral()
         self._camera = CameraPath()
+        self._visual_course = VisualCourse()
+        self._anchor = Anchor(settings.anchor_s)
         self._course = CourseOverGround()
         self._gate = FixGate()
         self._imu_ns: int | None = None
@@ -166,17 +176,27 @@ class SensorPose:
 
     def _m_P(self, t_ns: int, fix: Fix) -> Vector3:
         """Tr x m_gps + m_imu, in the reading that is asked for."""
-        here, sight, last = self._path_m(t_ns), fix.sight, self._camera.newest
-        seen = sight is not None and last is not None and last is not sight
         reading, literal_imu = self._settings.m_P, self._settings.m_imu == "literal"
-        since_m = _difference(here, last.path_m if seen and last and reading == "keyframe_local" else fix.path_m)
-        m_imu_m = self._four_samples.m_imu_m if literal_imu else since_m
+        if reading == "keyframe_local" and self._camera.newest is not None and not literal_imu:
+            x, y, z = (c + o for c, o in zip(self._chain_m(t_ns), self._anchor.offset_m, strict=True))
+            return (x, y, z)
+        m_imu_m = self._four_samples.m_imu_m if literal_imu else _difference(self._path_m(t_ns), fix.path_m)
         if reading == "literal_enu":
             return m_P_enu(self._camera.Tr, fix.p_site_m, m_imu_m)
         if reading == "literal_ecef":
             return m_P_ecef(self._camera.Tr, fix.p_site_m, m_imu_m, self._site)
-        moved = _difference(last.p_m, sight.p_m) if seen and last and sight else (0.0, 0.0, 0.0)
+        last, sight = self._camera.newest, fix.sight
+        moved = _difference(last.p_m, sight.p_m) if last and sight else (0.0, 0.0, 0.0)
         x, y, z = (p + m + i for p, m, i in zip(fix.p_site_m, moved, m_imu_m, strict=True))
+        return (x, y, z)
+
+    def _chain_m(self, t_ns: int) -> Vector3:
+        """Where the camera's path is, carried on by the IMU from the picture nearest to a time, else from the newest."""
+        sight = self._camera.near(t_ns) or self._camera.newest
+        here = self._path_m(t_ns)
+        if sight is None:
+            return here
+        x, y, z = (p + a - b for p, a, b in zip(sight.p_m, here, sight.path_m, strict=True))
         return (x, y, z)
 
     def _path_m(self, t_ns: int) -> Vector3:
@@ -207,8 +227,11 @@ class SensorPose:
             if self._due_ns is not None:
                 self._widened_m2 += self._drift_var_m2(fix.t_ns)
                 self._moved_to = p if insisted else self._moved_to
+            if insisted:
+                self._anchor.forget()
         var_m2 = variance_m2(fix, self._settings.gps_floor_m, self._settings.gps_var_m2)
         self.fix = Fix(fix.t_ns, fix.t_recv_ns, p, var_m2, self._path_m(fix.t_ns), self._camera.near(fix.t_ns))
+        self._anchor.fix(fix.t_ns, p, self._chain_m(fix.t_ns))
         if self._velocity is None or fix.t_ns - self._velocity.t_ns > self._settings.velocity_held_s * 1e9:
             if old is not None:
                 self.path.correct_by_displacement(old.t_ns, fix.t_ns, _difference(p, old.p_site_m), old.path_m)
@@ -261,10 +284,27 @@ class SensorPose:
         key = self._camera.held(motion.t_key_ns)
         if key is None:
             key = self._camera.begin(motion.t_key_ns, self._R_site_cam(motion.t_key_ns), self._path_m(motion.t_key_ns))
-        walked_m = hypot(*self.path.displacement_m(motion.t_key_ns, motion.t_ns)[:2])
-        length_m = min(walked_m, self._settings.fastest_walk_m_s * (motion.t_ns - motion.t_key_ns) * 1e-9)
-        self._camera.chain(motion, key, length_m, self._R_site_cam(motion.t_ns), self._path_m(motion.t_ns))
+        moved_m = self._seen_step_m(motion, key.R_site_cam)
+        self._camera.chain(motion, key, moved_m, self._R_site_cam(motion.t_ns), self._path_m(motion.t_ns))
         return Outcome.USED
+
+    def _seen_step_m(self, motion: VisualMotion, R_site_key: Matrix) -> Vector3:
+        """Return the step from the keyframe to the picture, site: the camera's direction where its parallax supports one."""
+        x, y, z = self.path.displacement_m(motion.t_key_ns, motion.t_ns)
+        if not any(motion.direction_key):
+            # no parallax: a rig that hardly moves by the IMU stands still, one that walks has only far things before it
+            stands = hypot(x, y) < _STILL_M_S * (motion.t_ns - motion.t_key_ns) * 1e-9
+            return (0.0, 0.0, 0.0) if stands else (x, y, z)
+        ex, ey = (R_site_key @ np.array(motion.direction_key))[:2].tolist()
+        self._visual_course.step(motion.t_ns, (ex, ey), (x, y))
+        turned = self._visual_course.turned((ex, ey))
+        if turned is None:
+            return (x, y, z)
+        length_m = min(hypot(x, y), self._settings.fastest_walk_m_s * (motion.t_ns - motion.t_key_ns) * 1e-9)
+        size = hypot(*turned)
+        if size < 0.5 or turned[0] * x + turned[1] * y < 0.5 * size * hypot(x, y):
+            return (x, y, z)
+        return (turned[0] / size * length_m, turned[1] / size * length_m, z)
 
     def _R_site_cam(self, t_ns: int) -> Matrix:
         return matrix_from_wxyz(self._dead_reckoned_attitude(t_ns)) @ self._R_body_cam

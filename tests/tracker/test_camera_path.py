@@ -17,35 +17,36 @@ def _motion(t_s: float, t_key_s: float, direction: tuple[float, float, float]) -
     return VisualMotion(t_ns, t_ns, 0, key_ns, np.eye(3), direction, 100, 5.0, False)
 
 
-def test_forward_is_where_the_camera_looks() -> None:
-    """Optical axis forward: east here; a second picture of the same keyframe does not add to the first."""
+def test_steps_add_up_from_the_keyframe() -> None:
+    """A second picture of the same keyframe does not add to the first; one of another keyframe does."""
     path = CameraPath()
     key = path.begin(0, EAST, NOWHERE)
-    path.chain(_motion(0.5, 0.0, (0.0, 0.0, 1.0)), key, 0.6, EAST, NOWHERE)
-    path.chain(_motion(1.0, 0.0, (0.0, 0.0, 1.0)), key, 1.2, EAST, NOWHERE)
+    path.chain(_motion(0.5, 0.0, (0.0, 0.0, 1.0)), key, (0.6, 0.0, 0.0), EAST, NOWHERE)
+    path.chain(_motion(1.0, 0.0, (0.0, 0.0, 1.0)), key, (1.2, 0.0, 0.0), EAST, NOWHERE)
     newest = path.newest
     assert newest is not None
     assert newest.p_m == pytest.approx((1.2, 0.0, 0.0))
     held = path.held(1 * S)
     assert held is newest
-    path.chain(_motion(1.5, 1.0, (1.0, 0.0, 0.0)), held, 0.5, EAST, NOWHERE)
+    path.chain(_motion(1.5, 1.0, (1.0, 0.0, 0.0)), held, (0.0, -0.5, 0.0), EAST, NOWHERE)
     assert path.newest is not None
-    assert path.newest.p_m == pytest.approx((1.2, -0.5, 0.0))  # to the camera's right is south
+    assert path.newest.p_m == pytest.approx((1.2, -0.5, 0.0))
 
 
-def test_without_parallax_nothing_moves() -> None:
-    """The paper: two views without a base line tell no translation."""
+def test_tr_is_the_step_in_the_keyframes_own_axes() -> None:
+    """Forward is the optical axis, east here; south is to the camera's right."""
     path = CameraPath()
     key = path.begin(0, EAST, NOWHERE)
-    path.chain(_motion(0.5, 0.0, NOWHERE), key, 0.6, EAST, NOWHERE)
-    assert path.newest is not None
-    assert path.newest.p_m == NOWHERE
+    path.chain(_motion(0.5, 0.0, (0.0, 0.0, 1.0)), key, (0.6, 0.0, 0.0), EAST, NOWHERE)
+    assert path.Tr[:3, 3] == pytest.approx((0.0, 0.0, 0.6))
+    path.chain(_motion(0.6, 0.0, (1.0, 0.0, 0.0)), key, (0.0, -0.5, 0.0), EAST, NOWHERE)
+    assert path.Tr[:3, 3] == pytest.approx((0.5, 0.0, 0.0))
 
 
 def test_a_gap_is_bridged_by_the_inertial_path() -> None:
     """Dark seconds: the next keyframe begins where the IMU says."""
     path = CameraPath()
-    path.chain(_motion(0.5, 0.0, NOWHERE), path.begin(0, EAST, NOWHERE), 0.6, EAST, (1.0, 0.0, 0.0))
+    path.chain(_motion(0.5, 0.0, NOWHERE), path.begin(0, EAST, NOWHERE), NOWHERE, EAST, (1.0, 0.0, 0.0))
     assert path.begin(9 * S, EAST, (5.0, 2.0, 0.0)).p_m == (4.0, 2.0, 0.0)
 
 
@@ -53,7 +54,7 @@ def test_near_means_half_a_second() -> None:
     """The picture of a fix is the nearest, and none where none is near."""
     path = CameraPath()
     for tenth in (1, 2, 3):
-        path.chain(_motion(tenth / 10, 0.0, NOWHERE), path.begin(0, EAST, NOWHERE), 0.0, EAST, NOWHERE)
+        path.chain(_motion(tenth / 10, 0.0, NOWHERE), path.begin(0, EAST, NOWHERE), NOWHERE, EAST, NOWHERE)
     near = path.near(int(0.22 * S))
     assert near is not None
     assert near.t_ns == int(0.2 * S)
