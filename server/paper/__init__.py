@@ -1,0 +1,1 @@
+"""The reproduction report: studies over seeds, sweeps, and the document made of them."""
