@@ -88,6 +88,11 @@ class StartHeading:
             self._gains.add(level_m_s, enu_m_s)
             self._decide()
 
+    def turn(self, yaw_rad: float) -> None:
+        """Take a correction of what is known already: the camera has seen, while walking, by how much it was off."""
+        if self.yaw_offset_rad is not None:
+            self.yaw_offset_rad = wrap_rad(self.yaw_offset_rad + yaw_rad)
+
     @property
     def is_final(self) -> bool:
         """Whether nothing more is to be learnt."""

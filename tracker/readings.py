@@ -27,6 +27,8 @@ class SensorSettings:
     """A receiver that states less is not believed."""
     anchor_s: float = 10.0
     """How long a fix is remembered where the camera's path carries it on: its white error averages out, its drift does not."""
+    camera_north: bool = True
+    """Correct the start heading by the angle that the camera finds between its travel and the path (not in the paper)."""
     fastest_walk_m_s: float = 2.0
     outage_speed_m_s: float = 0.5
     """An old fix is off by this much more for every second of its age."""

@@ -4,6 +4,7 @@ Nothing here knows of the filter. Where the text is silent or its literal equati
 `keyframe_local` and `sane` (the others: `tracker/readings.py`, `tracker/literal.py`):
 
 - m_R is Madgwick's attitude turned to north at the start: once by a compass or magnetometer, else by the receiver's motion.
+  With a camera the start heading's error, and what the gyroscope has drifted since, is corrected while walking (`VisualCourse`).
 - m_P is the fix (one, or with a camera many), carried on by the camera's motion since then, and by the doubly integrated
   specific force (what the camera has not covered, or everything without one).
 - v(0) of that integral is the receiver's own velocity, or what its fixes' displacements say where it tells none. While there
@@ -283,9 +284,14 @@ class SensorPose:
             return Outcome.REJECTED_STALE
         key = self._camera.held(motion.t_key_ns)
         if key is None:
-            key = self._camera.begin(motion.t_key_ns, self._R_site_cam(motion.t_key_ns), self._path_m(motion.t_key_ns))
-        moved_m = self._seen_step_m(motion, key.R_site_cam)
-        self._camera.chain(motion, key, moved_m, self._R_site_cam(motion.t_ns), self._path_m(motion.t_ns))
+            key = self._camera.begin(motion.t_key_ns, self._R_level_cam(motion.t_key_ns), self._path_m(motion.t_key_ns))
+        self._camera.R_site_level = matrix_from_wxyz(wxyz_from_yaw(self._heading.yaw_offset_rad))
+        moved_m = self._seen_step_m(motion, self._camera.R_site_cam(key))
+        self._camera.chain(motion, key, moved_m, self._R_level_cam(motion.t_ns), self._path_m(motion.t_ns))
+        if self._settings.camera_north and self._visual_course.turn_rad is not None:
+            turn_rad = self._visual_course.turn_rad
+            self._heading.turn(turn_rad)
+            self._visual_course.turn(turn_rad)
         return Outcome.USED
 
     def _seen_step_m(self, motion: VisualMotion, R_site_key: Matrix) -> Vector3:
@@ -306,8 +312,9 @@ class SensorPose:
             return (x, y, z)
         return (turned[0] / size * length_m, turned[1] / size * length_m, z)
 
-    def _R_site_cam(self, t_ns: int) -> Matrix:
-        return matrix_from_wxyz(self._dead_reckoned_attitude(t_ns)) @ self._R_body_cam
+    def _R_level_cam(self, t_ns: int) -> Matrix:
+        state = self.path.at(t_ns)
+        return matrix_from_wxyz(state.wxyz_level_body) @ self._R_body_cam if state else self._R_body_cam
 
 
 def _leapt(stamps_ns: int, arrivals_ns: int) -> bool:

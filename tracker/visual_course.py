@@ -42,6 +42,11 @@ class VisualCourse:
             return None
         return atan2(self._cross_m, self._dot_m)
 
+    def turn(self, yaw_rad: float) -> None:
+        """Take it that what the camera sees has been turned, steps past and to come: north has become better known."""
+        c, s = cos(yaw_rad), sin(yaw_rad)
+        self._dot_m, self._cross_m = c * self._dot_m + s * self._cross_m, c * self._cross_m - s * self._dot_m
+
     def turned(self, seen: tuple[float, float]) -> tuple[float, float] | None:
         """Return a direction by the camera as the path's north has it; None while that is not known."""
         turn_rad = self.turn_rad

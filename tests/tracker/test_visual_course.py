@@ -53,3 +53,10 @@ def test_an_old_angle_gives_way() -> None:
     for index in range(2000, 2040):
         course.step(index * S // 4, (cos(0.2), sin(0.2)), (0.4, 0.0))
     assert course.turn_rad == pytest.approx(-0.2, abs=0.01)
+
+
+@given(st.floats(-pi + 0.001, pi - 0.001))
+def test_a_correction_leaves_nothing_to_correct(turn_rad: float) -> None:
+    course = _walked(turn_rad)
+    course.turn(turn_rad)
+    assert course.turn_rad == pytest.approx(0.0, abs=1e-9)
