@@ -1,12 +1,30 @@
 """The rule base against the paper's own table, and the controller's laws."""
 
-from itertools import product
+from copy import deepcopy
+from fractions import Fraction
+from math import inf, nan, nextafter
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tracker.fuzzy import LEVELS, MOTION_MODELS, RULES, FuzzyController, Membership, MotionModel, rules_by_name
+from tracker.fuzzy import (
+    ANTECEDENTS,
+    LEVELS,
+    MOTION_MODELS,
+    NEXT_INDEX,
+    POSITION_MEMBERSHIP_M,
+    ROTATION_MEMBERSHIP_RAD,
+    RULES,
+    Antecedent,
+    FuzzyController,
+    Membership,
+    MotionModel,
+    NextIndex,
+    ReducedController,
+    RuleBase,
+    rules_by_name,
+)
 
 # The 54 rows that the paper prints: for each positional innovation and present model, what follows Low, Medium and High.
 PRINTED = """
@@ -65,17 +83,85 @@ def test_memberships_sum_to_one(magnitude: float) -> None:
     assert all(0.0 <= degree <= 1.0 for degree in degrees)
 
 
-@given(magnitudes, st.floats(0.0, 3.0), st.sampled_from(MOTION_MODELS))
-def test_the_strongest_of_all_81_rules_wins(y_p_m: float, y_r_rad: float, model: MotionModel) -> None:
-    """The controller's short cut equals the paper's procedure over the whole rule base."""
-    position, rotation = Membership(0.5, 1.5, 3.0), Membership(0.05, 0.15, 0.40)
-    strengths: dict[MotionModel, float] = {}
-    for (p, level_p), (r, level_r), present in product(enumerate(LEVELS), enumerate(LEVELS), MOTION_MODELS):
-        strength = position.degrees(y_p_m)[p] * rotation.degrees(y_r_rad)[r] if present == model else 0.0
-        following = RULES[level_p, level_r, present]
-        strengths[following] = max(strengths.get(following, 0.0), strength)
-    chosen = FuzzyController(position, rotation).next_model(y_p_m, y_r_rad, model)
-    assert strengths[chosen] == max(strengths.values())
+def strongest(position: Membership, rotation: Membership, y_p: float, y_r: float, model: MotionModel) -> Antecedent:
+    """The paper's procedure to the letter: 81 firing strengths, products of three degrees, and the first of the strongest.
+
+    In whole fractions, so that no rounding of a product decides; the third degree is 1 for rules of the present model, else 0.
+    """
+    degrees_p = dict(zip(LEVELS, map(Fraction, position.degrees(y_p)), strict=True))
+    degrees_r = dict(zip(LEVELS, map(Fraction, rotation.degrees(y_r)), strict=True))
+    strengths = {
+        (level_p, level_r, present): degrees_p[level_p] * degrees_r[level_r] * Fraction(present == model)
+        for level_p, level_r, present in ANTECEDENTS
+    }
+    return max(ANTECEDENTS, key=lambda antecedent: strengths[antecedent])
+
+
+breakpoints = st.lists(st.floats(0.001, 5.0), min_size=3, max_size=3, unique=True).map(sorted)
+memberships = st.sampled_from([POSITION_MEMBERSHIP_M, ROTATION_MEMBERSHIP_RAD]) | breakpoints.map(
+    lambda three: Membership(*three)
+)
+#: Where along low, medium, high a magnitude lies; whole and half steps are the breakpoints and the ties.
+steps = st.floats(-0.5, 2.5) | st.sampled_from([0.0, 0.5, 1.0, 1.5, 2.0])
+
+
+def magnitude_at(membership: Membership, step: float, ulps: int) -> float:
+    low, medium, high = membership.low, membership.medium, membership.high
+    magnitude = low + (medium - low) * step if step <= 1.0 else medium + (high - medium) * (step - 1.0)
+    for _ in range(abs(ulps)):
+        magnitude = nextafter(magnitude, inf if ulps > 0 else -inf)
+    return max(0.0, magnitude)
+
+
+@pytest.mark.parametrize("kind", [FuzzyController, ReducedController])
+@settings(max_examples=300)
+@given(memberships, memberships, steps, steps, st.integers(-2, 2), st.integers(-2, 2), st.sampled_from(MOTION_MODELS))
+def test_one_query_equals_the_strongest_of_81_rules(
+    kind: type[FuzzyController],
+    position: Membership,
+    rotation: Membership,
+    step_p: float,
+    step_r: float,
+    ulps_p: int,
+    ulps_r: int,
+    model: MotionModel,
+) -> None:
+    """On ties too, and a bit to either side of them: the table's look-up and the reduced base's nine rules, used twice."""
+    y_p, y_r = magnitude_at(position, step_p, ulps_p), magnitude_at(rotation, step_r, ulps_r)
+    fired = strongest(position, rotation, y_p, y_r, model)
+    controller = kind(position, rotation)
+    assert controller.rule_fired(y_p, y_r, model) == fired
+    assert controller.next_model(y_p, y_r, model) == RULES[fired]
+
+
+def test_nine_rules_used_twice_are_the_81() -> None:
+    """Each of the 81, by an innovation that is wholly of its two levels."""
+    controller = ReducedController(Membership(1.0, 2.0, 3.0), Membership(1.0, 2.0, 3.0))
+    whole = {"Low": 1.0, "Medium": 2.0, "High": 3.0}
+    found = {(p, r, m): controller.next_model(whole[p], whole[r], m) for p, r, m in ANTECEDENTS}
+    assert len(found) == 81
+    assert found == RULES == controller.rules.table
+
+
+def test_an_innovation_that_is_no_number_is_high() -> None:
+    assert FuzzyController().rule_fired(nan, nan, MotionModel(1, 1)) == ("High", "High", MotionModel(1, 1))
+
+
+def test_rules_can_be_other_ones() -> None:
+    """A variant has a name and 81 rules of its own, and leaves the paper's alone."""
+    steady: NextIndex = {"Low": (0, 1, 2), "Medium": (1, 1, 1), "High": (2, 2, 2)}
+    rules = RuleBase.separable("steady", steady, NEXT_INDEX)
+    controller = FuzzyController(rules=rules)
+    assert controller.next_model(9.0, 9.0, MotionModel(1, 1)) == MotionModel(2, 0)
+    assert FuzzyController().next_model(9.0, 9.0, MotionModel(1, 1)) == MotionModel(0, 0)
+    assert rules.by_name()["High,High,P1R1"] == "P2R0"
+    with pytest.raises(ValueError, match="expected 81 rules, got 1"):
+        RuleBase("short", (MotionModel(0, 0),))
+
+
+def test_a_controller_is_shared_by_snapshots() -> None:
+    controller = FuzzyController()
+    assert deepcopy(controller) is controller
 
 
 def test_a_tie_keeps_the_model() -> None:
