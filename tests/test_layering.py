@@ -13,6 +13,7 @@ MAY_IMPORT = {"tracker": {"tracker"}, "assets": {"assets"}, "server": {"tracker"
 
 ALLOWED_LIBRARIES = {
     "tracker/vision.py": {"cv2"},
+    "tracker/klt.py": {"cv2"},
     "tracker/pictures.py": {"cv2"},
     "tracker/video.py": {"av"},
     "tracker/container.py": {"mcap"},

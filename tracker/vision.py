@@ -4,7 +4,6 @@ Deterministic: the same pictures give the same motions (OpenCV's RANSAC starts f
 """
 
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import cv2
 import numpy as np
@@ -13,7 +12,9 @@ from numpy.typing import NDArray
 from tracker import lens, two_view
 from tracker.errors import MalformedInput
 from tracker.estimator import Snapshot
-from tracker.measurements import Frame, Image, Matrix, Vector3, VisualMotion
+from tracker.features import NO_FEATURES, Features, FeatureSource, View
+from tracker.klt import Klt
+from tracker.measurements import Frame, Matrix, Vector3, VisualMotion
 from tracker.rig import CameraModel
 
 
@@ -44,11 +45,10 @@ class VisionSettings:
 class _Tracks:
     """The held keyframe and what is still seen of it. Arrays are replaced, never changed."""
 
-    gray: Image
+    view: View
     """The newest picture."""
-    t_ns: int
-    points_px: NDArray[np.float32]
-    """(N, 2) where the features are in it."""
+    features: Features
+    """Where the N features are in it."""
     t_key_ns: int
     bearings_key: Matrix
     """(N, 3) where they were seen at the keyframe."""
@@ -70,29 +70,31 @@ class VisionFrontEnd:
 
     camera: CameraModel
     settings: VisionSettings = field(default_factory=VisionSettings)
+    source: FeatureSource = field(default_factory=Klt)
     _tracks: _Tracks | None = None
 
     def step(self, frame: Frame) -> VisualMotion | None:
         """Take a picture in order of capture; None for the first, and for one that shows no motion for certain."""
         try:
-            gray = frame.picture.gray()
+            view = self.source.look(frame)
         except MalformedInput:
             return None
         tracks = self._tracks
-        if tracks is not None and frame.t_ns <= tracks.t_ns:
+        if tracks is not None and frame.t_ns <= tracks.view.t_ns:
             return None
-        if tracks is None or gray.shape != tracks.gray.shape or frame.t_ns - tracks.t_ns > self.settings.stale_s * 1e9:
-            self._tracks = self._keyframe(gray, frame.t_ns, np.empty((0, 2), np.float32))
+        if tracks is None or not self._follows(tracks.view, view):
+            self._tracks = self._keyframe(view, NO_FEATURES)
             return None
-        tracks = _follow(tracks, gray, frame.t_ns)
-        if len(tracks.points_px) < 8:
-            self._tracks = self._keyframe(gray, frame.t_ns, tracks.points_px)
+        features, kept = self.source.follow(tracks.view, view, tracks.features)
+        if len(features) < 8:
+            self._tracks = self._keyframe(view, features)
             return None
-        motion = self._motion(tracks, self._camera_of(gray))
+        tracks = replace(tracks, view=view, features=features, bearings_key=tracks.bearings_key[kept])
+        motion = self._motion(tracks, self._camera_of(view))
         good = motion.inliers
-        seen = replace(tracks, points_px=tracks.points_px[good], bearings_key=tracks.bearings_key[good])
+        seen = replace(tracks, features=features.chosen(good), bearings_key=tracks.bearings_key[good])
         is_keyframe = self._is_due(seen, motion.parallax_px)
-        self._tracks = self._keyframe(gray, frame.t_ns, seen.points_px) if is_keyframe else seen
+        self._tracks = self._keyframe(view, seen.features) if is_keyframe else seen
         inliers = int(np.count_nonzero(good))
         if inliers < self.settings.least_inliers:
             return None
@@ -108,40 +110,39 @@ class VisionFrontEnd:
             is_keyframe,
         )
 
+    def _follows(self, before: View, after: View) -> bool:
+        """Return whether one picture can be tracked into another."""
+        return after.size_px == before.size_px and after.t_ns - before.t_ns <= self.settings.stale_s * 1e9
+
     def _is_due(self, seen: _Tracks, parallax_px: float) -> bool:
-        settings, left = self.settings, len(seen.points_px)
+        settings, left = self.settings, len(seen.features)
         if left < settings.least_inliers:
             return True
-        age_s = (seen.t_ns - seen.t_key_ns) * 1e-9
+        age_s = (seen.view.t_ns - seen.t_key_ns) * 1e-9
         if age_s < settings.key_period_s:
             return False
         few = left < settings.key_share * seen.born or left < settings.key_least
         return few or parallax_px > settings.key_parallax_px or age_s >= settings.key_age_s
 
-    def _camera_of(self, gray: Image) -> CameraModel:
-        height, width = gray.shape
-        if (width, height) == (self.camera.width_px, self.camera.height_px):
+    def _camera_of(self, view: View) -> CameraModel:
+        if view.size_px == (self.camera.width_px, self.camera.height_px):
             return self.camera
-        return lens.scaled(self.camera, width, height)
+        return lens.scaled(self.camera, view.width_px, view.height_px)
 
-    def _keyframe(self, gray: Image, t_ns: int, kept_px: NDArray[np.float32]) -> _Tracks:
+    def _keyframe(self, view: View, kept: Features) -> _Tracks:
         """Hold a picture: what is tracked already goes on, new features fill the empty parts."""
-        wanted = self.settings.features - len(kept_px)
-        points = kept_px
+        wanted = self.settings.features - len(kept)
+        features = kept
         if wanted > 0:
-            apart = max(5, round(0.7 * (gray.size / self.settings.features) ** 0.5 / 2))
-            mask = np.full(gray.shape, 255, np.uint8)
-            for x, y in kept_px:
-                cv2.circle(mask, (round(float(x)), round(float(y))), apart, 0, -1)
-            found = cv2.goodFeaturesToTrack(gray, wanted, 0.005, apart, mask=mask, blockSize=5)
-            if found is not None:
-                points = np.concatenate([kept_px, found.reshape(-1, 2).astype(np.float32)])
-        rays = lens.unproject(self._camera_of(gray), points.astype(np.float64))
-        return _Tracks(gray, t_ns, points, t_ns, two_view.bearings(rays), len(points))
+            pixels = view.width_px * view.height_px
+            apart_px = max(5, round(0.7 * (pixels / self.settings.features) ** 0.5 / 2))
+            features = kept.joined(self.source.detect(view, kept, wanted, apart_px))
+        rays = lens.unproject(self._camera_of(view), features.points_px.astype(np.float64))
+        return _Tracks(view, features, view.t_ns, two_view.bearings(rays), len(features))
 
     def _motion(self, tracks: _Tracks, camera: CameraModel) -> _Motion:
         settings = self.settings
-        xy = lens.unproject(camera, tracks.points_px.astype(np.float64))
+        xy = lens.unproject(camera, tracks.features.points_px.astype(np.float64))
         b_key, b_cam = tracks.bearings_key, two_view.bearings(xy)
         sigma_rad = settings.bearing_sigma_px / camera.fx_px
         R_turn = two_view.fit_rotation(b_key, b_cam, sigma_rad)
@@ -161,26 +162,6 @@ class VisionFrontEnd:
     def restore(self, snapshot: Snapshot) -> None:
         """Become what the snapshot was taken of."""
         self._tracks = snapshot
-
-
-def _follow(tracks: _Tracks, gray: Image, t_ns: int) -> _Tracks:
-    """Track features into the next picture, and back again: what does not return is lost (Lucas-Kanade on a pyramid)."""
-    there, found = _flow(tracks.gray, gray, tracks.points_px)
-    back, found_back = _flow(gray, tracks.gray, there)
-    height, width = gray.shape
-    off_px = np.linalg.norm(back - tracks.points_px, axis=1)
-    inside = (there[:, 0] >= 0) & (there[:, 1] >= 0) & (there[:, 0] <= width - 1) & (there[:, 1] <= height - 1)
-    good = found & found_back & (off_px < 1.0) & inside
-    return replace(tracks, gray=gray, t_ns=t_ns, points_px=there[good], bearings_key=tracks.bearings_key[good])
-
-
-def _flow(gray: Image, onto: Image, points_px: NDArray[np.float32]) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
-    """Return where points went, (N, 2), and whether they were found, (N,)."""
-    if len(points_px) == 0:  # a dark picture has no features, and OpenCV refuses none
-        return points_px, np.zeros(0, np.bool_)
-    nothing: Any = None
-    there, found, _ = cv2.calcOpticalFlowPyrLK(gray, onto, points_px, nothing, winSize=(17, 17), maxLevel=4)
-    return np.asarray(there, np.float32), np.asarray(found).ravel() == 1
 
 
 def _by_essential_matrix(b_key: Matrix, b_cam: Matrix, sigma_rad: float, parallax_px: float) -> _Motion | None:
