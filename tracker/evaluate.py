@@ -118,7 +118,7 @@ def follow(
     """Feed measurements, in order of arrival, and write into `result` what comes out."""
     began_ns = perf_counter_ns()
     sigmas: list[Matrix] = []
-    for due_ns, measurement in _ticks(measurements, result.t_start_ns):
+    for due_ns, measurement in ticks(measurements, result.t_start_ns):
         if measurement is None:
             pose = pipeline.predict(due_ns)
             if pose is not None:
@@ -127,7 +127,7 @@ def follow(
                 progress((due_ns - result.t_start_ns) * 1e-9 / max(result.duration_s, 1e-9))
                 sigmas += _state_covariance(pipeline.estimator)
             continue
-        _feed(pipeline, measurement, result)
+        feed(pipeline, measurement, result)
     result.wall_s = (perf_counter_ns() - began_ns) * 1e-9
     result.innovations += pipeline.innovations()
     result.rejected = pipeline.rejected
@@ -139,7 +139,7 @@ def _state_covariance(estimator: Estimator) -> list[Matrix]:
     return [] if Sigma is None else [Sigma]
 
 
-def _ticks(messages: Iterable[Measurement], start_ns: int) -> Iterator[tuple[int, Measurement | None]]:
+def ticks(messages: Iterable[Measurement], start_ns: int) -> Iterator[tuple[int, Measurement | None]]:
     """Yield the messages, and between them (t, None) every 20 ms, after all that had arrived by t."""
     due_ns = start_ns + _PERIOD_NS
     for measurement in messages:
@@ -149,7 +149,8 @@ def _ticks(messages: Iterable[Measurement], start_ns: int) -> Iterator[tuple[int
         yield measurement.t_recv_ns, measurement
 
 
-def _feed(pipeline: Pipeline, measurement: Measurement, result: Run) -> None:
+def feed(pipeline: Pipeline, measurement: Measurement, result: Run) -> None:
+    """Step one measurement, and note in `result` what it was and how long it took."""
     if isinstance(measurement, TruePose):
         result.truth.append(measurement)
         if pipeline.estimator.name == "truth":

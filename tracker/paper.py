@@ -12,7 +12,7 @@ from math import pi, sqrt
 
 import numpy as np
 
-from tracker.cycle import CycleFilter, InnovationReading
+from tracker.cycle import Cycle, CycleFilter, InnovationReading
 from tracker.estimator import Innovation, Origin, Pose, Snapshot
 from tracker.fusion import FusionSettings
 from tracker.geometry import conjugate, multiply, normalise, wxyz_from_rpy, wxyz_from_yaw
@@ -48,11 +48,13 @@ class PaperEstimator:
         declination_rad: float,
         uses_camera: bool,
         settings: PaperSettings | None = None,
+        sensors: SensorPose | None = None,
     ) -> None:
+        """`sensors` are a family's (`tracker/family.py`), which steps them for all its members; None for its own."""
         self._name = name
         self._uses_camera = uses_camera
         self._settings = settings or PaperSettings()
-        self._sensors = SensorPose(self._settings.sensors, origin, rig, declination_rad, uses_camera)
+        self._sensors = sensors or SensorPose(self._settings.sensors, origin, rig, declination_rad, uses_camera)
         self._fusion = CycleFilter(selector, self._settings.fusion, self._settings.innovation)
         self._yaw_offset_rad: float | None = None
         """Where north was in the last cycle."""
@@ -73,11 +75,15 @@ class PaperEstimator:
         outcome = self._sensors.step(measurement)
         cycle = self._sensors.take()
         if cycle is not None:
-            self._yaw_offset_rad = self._sensors.yaw_offset_rad
-            innovation = self._fusion.step(cycle)
-            if innovation is not None:
-                self._innovations.append(innovation)
+            self.filter(cycle)
         return outcome
+
+    def filter(self, cycle: Cycle) -> None:
+        """Take what the sensors have just made."""
+        self._yaw_offset_rad = self._sensors.yaw_offset_rad
+        innovation = self._fusion.step(cycle)
+        if innovation is not None:
+            self._innovations.append(innovation)
 
     def predict(self, t_ns: int) -> Pose | None:
         """Return the pose at t_ns: the last filtered one, moved by the inertial path between its cycle and t_ns."""
