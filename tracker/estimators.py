@@ -8,22 +8,29 @@ import numpy as np
 from tracker.errors import UnknownEstimator
 from tracker.estimator import Estimator, Origin
 from tracker.geodesy import SiteFrame
-from tracker.motion import ConstantMotion, FuzzyMotion, InteractingMotion, MotionSelector
+from tracker.motion import (
+    AutomatonMotion,
+    ConstantMotion,
+    FuzzyMotion,
+    InteractingMotion,
+    MotionSelector,
+    ReducedMotion,
+)
 from tracker.paper import PaperEstimator, PaperSettings
 from tracker.rig import Rig
 from tracker.truth import TruthEstimator
 
-SELECTORS: dict[str, type[MotionSelector]] = {"cmm": ConstantMotion, "famm": FuzzyMotion, "imm": InteractingMotion}
+#: Who may choose the motion model: the paper's two, and their rivals.
+SELECTORS: dict[str, type[MotionSelector]] = {
+    "cmm": ConstantMotion,
+    "famm": FuzzyMotion,
+    "dfa": AutomatonMotion,
+    "imm": InteractingMotion,
+    "reduced": ReducedMotion,
+}
+SENSORS = ("gps-imu", "camera-gps-imu")
 
-ESTIMATORS: tuple[str, ...] = (
-    "gps-imu/cmm",
-    "gps-imu/famm",
-    "gps-imu/imm",
-    "camera-gps-imu/cmm",
-    "camera-gps-imu/famm",
-    "camera-gps-imu/imm",
-    "truth",
-)
+ESTIMATORS: tuple[str, ...] = (*(f"{sensors}/{selector}" for sensors in SENSORS for selector in SELECTORS), "truth")
 DEFAULT_ESTIMATOR = "camera-gps-imu/famm"
 
 

@@ -1,9 +1,13 @@
-"""Who chooses the motion model of the next prediction: one interface for constant, fuzzy and interacting models."""
+"""Who chooses the motion model of the next prediction: one interface for the paper's two ways and their rivals.
+
+`cmm` and `famm` are the paper's; `reduced` is its future work, `dfa` the authors' earlier automaton, `imm` the classic way.
+"""
 
 from typing import Protocol, Self
 
+from tracker.dfa import Automaton
 from tracker.fusion import FusionFilter, FusionSettings
-from tracker.fuzzy import FuzzyController, MotionModel
+from tracker.fuzzy import FuzzyController, MotionModel, ReducedController
 from tracker.imm import InteractingFilter
 from tracker.measurements import Matrix, Vector3
 
@@ -94,7 +98,7 @@ class ConstantMotion:
 
 
 class FuzzyMotion:
-    """FAMM: the fuzzy controller chooses among nine."""
+    """FAMM: the fuzzy controller chooses among nine (the paper's fig. "Fuzzy rule-based selection of motion models")."""
 
     filter_kind: type[MotionFilter] = FusionFilter
     first = AT_REST
@@ -105,6 +109,27 @@ class FuzzyMotion:
     def following(self, y_p_m: float, y_r_rad: float, filter_: MotionFilter, model: MotionModel) -> MotionModel:
         """Return the consequent of the strongest rule."""
         return self._controller.next_model(y_p_m, y_r_rad, model)
+
+
+class ReducedMotion(FuzzyMotion):
+    """FAMM with the paper's rule base reduced to nine rules, used twice."""
+
+    def __init__(self, controller: ReducedController | None = None) -> None:
+        super().__init__(controller or ReducedController())
+
+
+class AutomatonMotion:
+    """DFA: crisp thresholds on the innovation lead from one of the nine to another."""
+
+    filter_kind: type[MotionFilter] = FusionFilter
+    first = AT_REST
+
+    def __init__(self, automaton: Automaton | None = None) -> None:
+        self._automaton = automaton or Automaton()
+
+    def following(self, y_p_m: float, y_r_rad: float, filter_: MotionFilter, model: MotionModel) -> MotionModel:
+        """Return the automaton's next state."""
+        return self._automaton.next_model(y_p_m, y_r_rad, model)
 
 
 class InteractingMotion:

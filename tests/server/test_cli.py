@@ -159,11 +159,12 @@ def test_evaluate_writes_figures_and_poses(walk: Path, tmp_path: Path) -> None:
     assert result.returncode == 0
     assert "small cannot run camera-gps-imu/famm: it has no camera" in result.stdout
     written = json.loads((tmp_path / "x.json").read_text())
-    assert [run["estimator"] for run in written["runs"]] == ["gps-imu/cmm", "gps-imu/famm", "gps-imu/imm", "truth"]
+    models = ("cmm", "famm", "dfa", "imm", "reduced")
+    assert [run["estimator"] for run in written["runs"]] == [*(f"gps-imu/{model}" for model in models), "truth"]
     assert {run["log"] for run in written["runs"]} == {"small"}
     assert written["runs"][-1]["truth"]["ate_rmse_m"] < 1e-3
     names = sorted(path.name for path in (tmp_path / "poses").iterdir())
-    assert names == [f"small.{name}.tum" for name in ("gps-imu-cmm", "gps-imu-famm", "gps-imu-imm", "truth")]
+    assert names == [*(f"small.gps-imu-{model}.tum" for model in sorted(models)), "small.truth.tum"]
     assert all(len(line.split()) == 8 for line in (tmp_path / "poses" / names[0]).read_text().splitlines())
 
 

@@ -45,13 +45,12 @@ def _printed(evaluation: Evaluation) -> str:
 def test_all_that_the_sensors_allow(walk: Path, tmp_path: Path) -> None:
     """All without a camera run; those with one say what is missing; the files are what other programs read."""
     evaluation = evaluate([walk], (), tmp_path / "poses", _nothing)
-    assert [row["estimator"] for row in evaluation.runs] == ["gps-imu/cmm", "gps-imu/famm", "gps-imu/imm", "truth"]
+    models = ("cmm", "famm", "dfa", "imm", "reduced")
+    assert [row["estimator"] for row in evaluation.runs] == [*(f"gps-imu/{model}" for model in models), "truth"]
     write_json(evaluation, tmp_path / "figures.json")
     found = json.loads((tmp_path / "figures.json").read_text())
     assert [(m["estimator"], m["missing"]) for m in found["missing"]] == [
-        ("camera-gps-imu/cmm", "no camera"),
-        ("camera-gps-imu/famm", "no camera"),
-        ("camera-gps-imu/imm", "no camera"),
+        (f"camera-gps-imu/{model}", "no camera") for model in models
     ]
     assert found["runs"] == evaluation.runs
     table = _printed(evaluation)
@@ -68,6 +67,17 @@ def test_centimetres_in_the_table_metres_in_the_json(walk: Path) -> None:
     jitter_m = evaluation.runs[0]["truth"]["jitter_rms_m"]
     assert 0.0 < jitter_m < 1.0
     assert f" {100.0 * jitter_m:.1f} " in _printed(evaluation)
+
+
+def test_a_changed_setting_changes_the_figures_and_is_written_down(walk: Path, tmp_path: Path) -> None:
+    command = ["evaluate", str(walk), "--estimator", "gps-imu/cmm", "--json", str(tmp_path / "x.json")]
+    usual = evaluate([walk], ("gps-imu/cmm",), None, _nothing)
+    result = CliRunner().invoke(app, [*command, "--set", "accel_noise_m_s2=0.1"])
+    assert result.exit_code == 0
+    assert "accel_noise_m_s2 = 0.1" in result.stdout
+    written = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))
+    assert written["settings"] == {"paper.fusion.accel_noise_m_s2": 0.1}
+    assert written["runs"][0]["filter_error_m"] != usual.runs[0]["filter_error_m"]
 
 
 def test_a_cut_log_is_played_to_where_it_breaks(walk: Path, tmp_path: Path) -> None:
