@@ -14,6 +14,7 @@ from typing import Annotated, Literal, NoReturn
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
 from assets.errors import AssetError
@@ -130,18 +131,32 @@ def evaluate(
     poses: Annotated[
         Path | None, typer.Option(help="Write LOG.ESTIMATOR.tum here, for other tools.", metavar="DIR")
     ] = None,
+    change: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            help="Change a setting, for instance m_P=literal_enu; `agora settings` lists them. May be given more than once.",
+            metavar="KEY=VALUE",
+        ),
+    ] = None,
 ) -> None:
     """Measure estimators on recorded walks: the paper's filter error, and the error against truth where there is one."""
     import cv2
 
     from server.evaluation import evaluate as evaluate_logs
     from server.evaluation import print_table, write_json
+    from server.settings import choose
 
+    settings = choose(change or ())
     cv2.setNumThreads(1)  # a rig has other work for its cores, and figures should not depend on how many there are
     with _progress("evaluating") as bar:
         task = bar.add_task("", total=1.0)
         evaluation = evaluate_logs(
-            logs, tuple(estimator or ()), poses, lambda label, done: bar.update(task, description=label, completed=done)
+            logs,
+            tuple(estimator or ()),
+            poses,
+            lambda label, done: bar.update(task, description=label, completed=done),
+            settings,
         )
     if json_file is not None:
         write_json(evaluation, json_file)
@@ -235,6 +250,19 @@ def rules(as_json: Annotated[bool, typer.Option("--json", help="All 81 rules as 
         table.add_row(level, *map(str, NEXT_INDEX[level]))
     out.print(table)
     out.print("All 81 rules by name: agora rules --json", style="dim")
+
+
+@app.command()
+def settings() -> None:
+    """List the settings of the estimators that `agora evaluate --set KEY=VALUE` changes, each with its default."""
+    from rich.padding import Padding
+
+    from server.settings import all_settings
+
+    for setting in all_settings():
+        out.print(f"[bold]{setting.key}[/bold] = [cyan]{escape(setting.text)}[/cyan]")
+        out.print(Padding(setting.meaning, (0, 0, 1, 4)), markup=False)
+    out.print("The end of a name is enough: agora evaluate LOG --set m_P=literal_enu", style="dim")
 
 
 def _origin(site: Site) -> Origin:

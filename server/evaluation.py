@@ -9,8 +9,9 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from server.settings import changes
 from tracker.errors import InputError, MissingSensor
-from tracker.estimators import ESTIMATORS, check_name, missing_sensors
+from tracker.estimators import ESTIMATORS, Settings, check_name, missing_sensors
 from tracker.evaluate import Run, figures, run
 from tracker.log import Log
 from tracker.score import Figures
@@ -25,9 +26,17 @@ class Evaluation:
     runs: list[Figures] = field(default_factory=list)
     missing: list[dict[str, str]] = field(default_factory=list)
     """Log, estimator and what the log lacks for it."""
+    settings: dict[str, Any] = field(default_factory=dict)
+    """Those that were not the defaults."""
 
 
-def evaluate(paths: Iterable[Path], estimators: tuple[str, ...], poses: Path | None, progress: Progress) -> Evaluation:
+def evaluate(
+    paths: Iterable[Path],
+    estimators: tuple[str, ...],
+    poses: Path | None,
+    progress: Progress,
+    settings: Settings | None = None,
+) -> Evaluation:
     """Run every log through every estimator (none named: all) that its sensors allow.
 
     Raises:
@@ -35,7 +44,7 @@ def evaluate(paths: Iterable[Path], estimators: tuple[str, ...], poses: Path | N
     """
     for name in estimators:
         check_name(name)
-    evaluation = Evaluation()
+    evaluation = Evaluation(settings=changes(settings or Settings()))
     for log in [Log.open(path) for path in paths]:
         for name in estimators or ESTIMATORS:
             reason = missing_sensors(name, log.info, log.rig)
@@ -43,7 +52,7 @@ def evaluate(paths: Iterable[Path], estimators: tuple[str, ...], poses: Path | N
                 evaluation.missing.append({"log": log.name, "estimator": name, "missing": reason})
                 continue
             label = f"{log.name}  {name}"
-            result = run(log, name, progress=lambda done, label=label: progress(label, done))  # type: ignore[misc]
+            result = run(log, name, settings, progress=lambda done, label=label: progress(label, done))  # type: ignore[misc]
             evaluation.runs.append(figures(result))
             if poses is not None:
                 _write_tum(result, poses)
@@ -54,8 +63,9 @@ def evaluate(paths: Iterable[Path], estimators: tuple[str, ...], poses: Path | N
 
 
 def write_json(evaluation: Evaluation, path: Path) -> None:
-    """Write `{"runs": [...], "missing": [...]}`."""
-    text = json.dumps({"runs": evaluation.runs, "missing": evaluation.missing}, indent=1, allow_nan=False)
+    """Write `{"runs": [...], "missing": [...], "settings": {...}}`."""
+    content = {"runs": evaluation.runs, "missing": evaluation.missing, "settings": evaluation.settings}
+    text = json.dumps(content, indent=1, allow_nan=False)
     try:
         path.write_text(text + "\n", encoding="utf-8")
     except OSError as error:
@@ -115,6 +125,10 @@ def print_table(evaluation: Evaluation, console: Console) -> None:
         table.add_row(row["log"] if row["log"] != last else "", row["estimator"], *_cells(row))
         last = row["log"]
     console.print(table)
+    if evaluation.settings:
+        console.print(
+            "With " + ", ".join(f"{key} = {value}" for key, value in evaluation.settings.items()), style="dim"
+        )
     for entry in evaluation.missing:
         console.print(f"{entry['log']} cannot run {entry['estimator']}: it has {entry['missing']}.", style="yellow")
     # every run of a log reads the same messages, and one without a camera fewer of them: the fullest reading speaks

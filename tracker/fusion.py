@@ -12,6 +12,7 @@ import numpy as np
 from tracker.fuzzy import MotionModel
 from tracker.geometry import wrap_rad
 from tracker.measurements import Matrix, Vector3
+from tracker.readings import require_positive
 
 
 @dataclass(frozen=True)
@@ -22,11 +23,20 @@ class FusionSettings:
     """Process noise of V: white acceleration (discrete white-noise acceleration model). Footfalls and tight turns are as large;
     0.5 keeps the filter's own error smaller and lags behind every corner: measured, 8 to 12 % more error against truth."""
     angular_accel_noise_rad_s2: float = 1.0
+    """Process noise of Omega: white angular acceleration."""
     rotation_sigma_rad: float = 0.0044
     """Noise of m_R from one cycle to the next, a quarter of a degree. The slow error of the IMU filter, some degrees, is no
     noise that a Kalman filter can average: calling it that only makes the picture lag behind a turning head."""
     rate_sigma: float = 1.0
     """Start of V and Omega, m/s and rad/s."""
+
+    def __post_init__(self) -> None:
+        require_positive(
+            accel_noise_m_s2=self.accel_noise_m_s2,
+            angular_accel_noise_rad_s2=self.angular_accel_noise_rad_s2,
+            rotation_sigma_rad=self.rotation_sigma_rad,
+            rate_sigma=self.rate_sigma,
+        )
 
 
 @dataclass

@@ -30,7 +30,9 @@ class PaperSettings:
     sensors: SensorSettings = field(default_factory=SensorSettings)
     fusion: FusionSettings = field(default_factory=FusionSettings)
     innovation: InnovationReading = "metres"
+    """What the controller is given: metres (and radians), or nis: divided by what the filter expected of it."""
     tilt_sigma_rad: float = 0.017
+    """What Madgwick's filter is good for; the filter's own R only holds its noise."""
     heading_sigma_rad: float = 0.09
     """What Madgwick's filter and the start heading are good for; the filter's own R only holds their noise."""
 

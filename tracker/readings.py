@@ -1,6 +1,7 @@
 """How the paper is read where its text is silent, ambiguous or literally wrong: one settings object."""
 
 from dataclasses import dataclass
+from math import inf
 from typing import Literal, TypeAlias
 
 from tracker.measurements import Vector3
@@ -20,7 +21,10 @@ class SensorSettings:
     cycle_s: float = 0.25
     """Its camera's four keyframes a second."""
     m_P: PositionReading = "keyframe_local"
+    """keyframe_local: the fix, and the camera's displacement since; literal_enu, literal_ecef: Tr times the fix, about the site's
+    origin or the Earth's centre."""
     m_imu: InertialReading = "sane"
+    """sane: turned to the site, gravity removed, integrated since the fix; literal: four samples, their mean at rest subtracted."""
     gps_var_m2: Vector3 = (2.12**2, 2.12**2, 4.0**2)
     """For a receiver that states none: 2.5 m CEP."""
     gps_floor_m: float = 1.0
@@ -30,7 +34,26 @@ class SensorSettings:
     camera_north: bool = True
     """Correct the start heading by the angle that the camera finds between its travel and the path (not in the paper)."""
     fastest_walk_m_s: float = 2.0
+    """A camera's step is never longer than this speed makes it."""
     outage_speed_m_s: float = 0.5
     """An old fix is off by this much more for every second of its age."""
     velocity_held_s: float = 3.0
     """A receiver that has told no velocity for this long tells none: its fixes' displacements are used."""
+
+    def __post_init__(self) -> None:
+        require_positive(
+            cycle_s=self.cycle_s,
+            gps_var_m2=min(self.gps_var_m2),
+            gps_floor_m=self.gps_floor_m,
+            anchor_s=self.anchor_s,
+            fastest_walk_m_s=self.fastest_walk_m_s,
+            outage_speed_m_s=self.outage_speed_m_s,
+            velocity_held_s=self.velocity_held_s,
+        )
+
+
+def require_positive(**values: float) -> None:
+    """Raise ValueError for the first value that is not a finite number above zero."""
+    for name, value in values.items():
+        if not 0.0 < value < inf:
+            raise ValueError(f"{name} must be a number above zero, not {value}")
