@@ -17,7 +17,8 @@ from numpy.typing import ArrayLike, NDArray
 from assets.axes import Array
 from assets.chunks import Chunk, chunked, seen
 from assets.errors import GraphicsMissing
-from assets.lens import Lens, Pinhole, finer
+from assets.lens import NONE, Lens, Pinhole, finer
+from assets.projection import depths, projection_from_pinhole
 from assets.scene import Scene, expanded
 from assets.shaders import (
     DISC_FRAGMENT,
@@ -29,15 +30,13 @@ from assets.shaders import (
     SKY_FRAGMENT,
     SKY_VERTEX,
 )
+from assets.sun import sun_direction, sun_projection
 
 Picture: TypeAlias = NDArray[np.uint8]
-NEAR_M, FAR_M = 0.2, 4000.0
-SUN_AZIMUTH_RAD, SUN_ELEVATION_RAD = np.radians(212.0), np.radians(62.0)
-"""An hour after noon in early summer."""
 FINER = 2
 """Pixels are drawn as so many by so many."""
-SHADE_PX, SHADE_RADIUS_M, SHADE_CENTRE_M = 4096, 200.0, (-40.0, 0.0, 0.0)
-"""The shadows' picture: a square of the site as the sun sees it."""
+SHADE_PX = 4096
+"""Of the shadows' picture."""
 DISC_CORNERS = 24
 
 
@@ -127,6 +126,18 @@ class Renderer:
         lens = Lens(Pinhole(self.width, self.height, fx, fy, cx, cy), distortion_model, tuple(distortion))
         points = np.asarray(points_m, dtype=np.float64).reshape(-1, 3)
         return self._taken(lens, T_site_cam, points, colours, radius_px, 1.0, FINER)
+
+    def seen(self, T_site_cam: ArrayLike, fx: float, fy: float, cx: float, cy: float) -> tuple[Picture, Array]:
+        """Return the picture of a straight lens, and (height, width) how far what it shows is along the line of sight.
+
+        Metres; of the pixels that cover one the nearest, and infinite where it shows only sky.
+        """
+        lens = Lens(Pinhole(self.width, self.height, fx, fy, cx, cy), NONE, ())
+        picture = self._taken(lens, T_site_cam, np.zeros((0, 3)), (), 1.0, 1.0, FINER)
+        target = self._target(FINER * self.width, FINER * self.height)
+        stored = np.frombuffer(target.read(components=1, attachment=-1, dtype="f4"), np.float32)
+        fine = stored.reshape(self.height, FINER, self.width, FINER)
+        return picture, depths(fine.min(axis=(1, 3)).astype(np.float64))
 
     def _taken(
         self,
@@ -256,42 +267,6 @@ class Renderer:
         vertices, elements = self._gl.buffer(table.tobytes()), self._gl.buffer(triangles.tobytes())
         layout = [(vertices, "3f 3f 2f 3f", "position", "normal", "uv", "colour")]
         return _Part(texture, self._gl.vertex_array(self._scene, layout, elements), vertices, elements, chunks)
-
-
-def sun_direction() -> tuple[float, float, float]:
-    """Return the unit vector towards the sun, site frame."""
-    flat = np.cos(SUN_ELEVATION_RAD)
-    east, north = flat * np.sin(SUN_AZIMUTH_RAD), flat * np.cos(SUN_AZIMUTH_RAD)
-    return float(east), float(north), float(np.sin(SUN_ELEVATION_RAD))
-
-
-def sun_projection() -> Array:
-    """Return the (4, 4) map from the site frame to the clip space of the shadows' picture."""
-    towards = np.array(sun_direction())
-    right = np.cross((0.0, 0.0, 1.0), towards)
-    right /= np.linalg.norm(right)
-    axes = np.stack([right, np.cross(towards, right), -towards]) / SHADE_RADIUS_M
-    T = np.eye(4)
-    T[:3, :3] = axes
-    T[:3, 3] = -axes @ SHADE_CENTRE_M
-    return T
-
-
-def projection_from_pinhole(camera: Pinhole) -> Array:
-    """Return the (4, 4) map from the camera's frame to OpenGL's clip space.
-
-    Row 0 of the framebuffer is the top row of the picture, so nothing is flipped when it is read; the half pixel is there
-    because OpenGL counts from a pixel's edge and OpenCV from its centre.
-    """
-    w, h = camera.width_px, camera.height_px
-    return np.array(
-        [
-            [2.0 * camera.fx_px / w, 0.0, 2.0 * (camera.cx_px + 0.5) / w - 1.0, 0.0],
-            [0.0, 2.0 * camera.fy_px / h, 2.0 * (camera.cy_px + 0.5) / h - 1.0, 0.0],
-            [0.0, 0.0, (FAR_M + NEAR_M) / (FAR_M - NEAR_M), -2.0 * FAR_M * NEAR_M / (FAR_M - NEAR_M)],
-            [0.0, 0.0, 1.0, 0.0],
-        ]
-    )
 
 
 def _context() -> Any:

@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 from assets.gltf import Node, Scene
 from assets.lens import Pinhole
 from assets.materials import MATERIALS
-from assets.render import FAR_M, NEAR_M, Renderer, projection_from_pinhole, sun_direction
+from assets.projection import FAR_M, NEAR_M, depths, projection_from_pinhole
+from assets.render import Renderer
 from assets.shape import Place, Shape
+from assets.sun import sun_direction
 
 Make = Callable[[Scene, int, int], Renderer]
 MAGENTA = (255, 0, 255)
@@ -132,6 +134,32 @@ def test_depths_of_the_near_and_far_plane_are_the_ends_of_clip_space() -> None:
     for depth, end in ((NEAR_M, -1.0), (FAR_M, 1.0)):
         clip = projection @ np.array([0.0, 0.0, depth, 1.0])
         assert clip[2] / clip[3] == pytest.approx(end)
+
+
+def test_depths_of_the_buffer_are_metres() -> None:
+    """There and back through the projection; the far plane is the sky."""
+    projection = projection_from_pinhole(Pinhole(320, 240, *INTRINSICS))
+    metres = np.array([0.5, 3.0, 100.0, 2000.0])
+    clip = np.column_stack([np.zeros((4, 2)), metres, np.ones(4)]) @ projection.T
+    stored = (clip[:, 2] / clip[:, 3] + 1.0) / 2.0
+    assert depths(stored) == pytest.approx(metres)
+    assert np.isinf(depths(np.ones(1))[0])
+
+
+def test_how_far_is_what_a_picture_shows(renderer: Make) -> None:
+    """A board 10 m ahead before the sky, seen along its normal: the same picture as ever, and one distance all over it."""
+    shape = Shape()
+    shape.polygons("wood", [(-1.0, 10.0, 0.0), (1.0, 10.0, 0.0), (1.0, 10.0, 2.0), (-1.0, 10.0, 2.0)], 0.0)
+    textures = {"wood": np.zeros((4, 4, 3), dtype=np.uint8)}
+    drawing = renderer(Scene([Node("board", shape.meshes(Place.at(0.0, 0.0, 0.0)), {})], textures), 320, 240)
+    pose = looking_north(1.0, 0.0)
+    picture, depth_m = drawing.seen(pose, *INTRINSICS)
+    assert (picture == drawing.render(pose, *INTRINSICS)).all()
+    fx, fy, cx, cy = INTRINSICS
+    x, y = np.meshgrid(np.arange(320), np.arange(240))
+    inside = np.maximum(np.abs(x - cx) / fx, np.abs(y - cy) / fy) * 10.0
+    assert depth_m[inside < 0.95] == pytest.approx(10.0, abs=1e-3)
+    assert np.isinf(depth_m[inside > 1.05]).all()
 
 
 def test_colours_must_match_points_and_poses_be_four_by_four(renderer: Make, plain: Scene) -> None:
