@@ -171,7 +171,7 @@ def test_a_walk_without_camera_is_shown_over_empty_pictures(dark: Path, tmp_path
         meta = watcher.frame_where(lambda meta: meta.pose_valid)
         assert (meta.camera.width_px, meta.camera.height_px) == (640, 480)
         assert "no camera" in watcher.session["notice"]
-        assert set(watcher.session["unavailable"]) == {f"camera-gps-imu/{name}" for name in ("cmm", "famm", "imm")}
+        assert set(watcher.session["unavailable"]) == {name for name in ESTIMATORS if name.startswith("camera")}
 
 
 def test_the_log_itself_can_be_had(dark: Path, tmp_path: Path) -> None:
