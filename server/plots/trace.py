@@ -64,6 +64,21 @@ class Trace:
         """Whether the position's truth is known anywhere."""
         return bool(np.any(np.isfinite(self.truth_p_site_m)))
 
+    @property
+    def error_m(self) -> Array:
+        """Return the horizontal distance from the truth, (n,), NaN where that is unknown."""
+        return np.asarray(np.hypot(*(self.p_site_m - self.truth_p_site_m)[:, :2].T), float)
+
+    @property
+    def turn_error_rad(self) -> Array:
+        """Return the errors of roll, pitch and yaw by the shorter way round, (n, 3), NaN where the truth is unknown."""
+        return np.asarray(np.angle(np.exp(1j * (self.rpy_rad - self.truth_rpy_rad))), float)
+
+    @property
+    def scored(self) -> NDArray[np.bool_]:
+        """Where the score counts: past the start, in which filters settle, and where the truth is known."""
+        return (self.t_s >= score.SETTLING_S) & np.isfinite(self.error_m)
+
     def save(self, path: Path) -> None:
         """Write all of it as one compressed .npz."""
         path.parent.mkdir(parents=True, exist_ok=True)
