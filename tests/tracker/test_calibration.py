@@ -33,6 +33,32 @@ def test_five_thousand_samples_are_enough() -> None:
     assert 5000 <= calibration.samples < 5200
 
 
+def wander(seconds: float, rad_s_s: float) -> list[ImuSample]:
+    """A rig that lies still while its offset grows."""
+    return [sample(k * 0.004, (0.001 + rad_s_s * k * 0.004, 0.0, 0.0)) for k in range(round(seconds * 250))]
+
+
+def test_an_offset_that_wanders_is_followed_while_the_rig_lies_still() -> None:
+    """The newest 5000 samples but for a second: 20 s whose middle is 11 s ago. They are never more than that, however long."""
+    calibration = RestCalibration()
+    for one in wander(60.0, 1e-5):
+        calibration.step(one)
+    assert calibration.finished
+    assert 5000 <= calibration.samples < 5200
+    assert calibration.gyro_offset_rad_s[0] == pytest.approx(0.001 + 1e-5 * (60.0 - 11.0), abs=1e-5)
+
+
+def test_taking_the_rig_up_spoils_no_offset() -> None:
+    """The hand's first second looks still, and is not counted; after it the offset stands, though the rig lies down again."""
+    calibration = RestCalibration()
+    still, taken = wander(40.0, 0.0), [sample(40.0 + k * 0.004, (0.02, 0.0, 0.0)) for k in range(250)]
+    moving = [sample(41.0 + k * 0.004, (0.5, 0.0, 0.0)) for k in range(250)]
+    again = [sample(42.0 + k * 0.004, (0.009, 0.0, 0.0)) for k in range(10000)]
+    for one in (*still, *taken, *moving, *again):
+        calibration.step(one)
+    assert calibration.gyro_offset_rad_s[0] == pytest.approx(0.001, abs=1e-6)
+
+
 def test_a_turning_rig_gives_no_offset() -> None:
     calibration = RestCalibration()
     for k in range(1000):
