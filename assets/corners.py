@@ -68,7 +68,9 @@ class CornerAtlas:
             folder: Where squares are kept.
         """
         self._scene, self._ground_z_m, self._eye_height_m = scene, ground_z_m, eye_height_m
-        self._folder = folder / f"{key}-{VERSION}"
+        self.key = f"{key}-{VERSION}"
+        """What tells it from other atlases."""
+        self._folder = folder / self.key
         self._held: OrderedDict[tuple[int, int], Corners] = OrderedDict()
         self._renderer: Renderer | None = None
 

@@ -1,6 +1,6 @@
 """A scene before it is written: named nodes of meshes, and of meshes that are drawn many times."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -71,6 +71,18 @@ class Scene:
 
     nodes: Sequence[Node]
     textures: Mapping[str, Texture]
+
+
+def content_of(scene: Scene) -> Iterator[bytes]:
+    """Yield all that a picture of a scene depends on, for a hash."""
+    for node in scene.nodes:
+        for mesh in [*node.meshes, *(part.mesh for part in node.instances)]:
+            yield mesh.material.encode()
+            for array in (mesh.positions_m, mesh.normals, mesh.uvs, mesh.colours, mesh.triangles):
+                yield array.tobytes()
+        yield from (part.T_site_part.tobytes() for part in node.instances)
+    for name, texture in scene.textures.items():
+        yield name.encode() + texture.tobytes()
 
 
 def expanded(scene: Scene) -> Scene:

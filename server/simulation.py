@@ -14,7 +14,7 @@ from assets import exposure
 from assets.exposure import Exposure
 from assets.lens import Pinhole
 from assets.render import Renderer
-from assets.scene import Scene, expanded
+from assets.scene import Scene, content_of, expanded
 from tracker.errors import InputError
 from tracker.gait import Ground
 from tracker.log_writer import LogWriter
@@ -80,12 +80,8 @@ def write_walk(
 def _key(settings: WalkSettings, scene: Scene) -> str:
     """Return what the pictures depend on, as a folder's name: another walk or world must not go on with these."""
     content = sha256(repr(settings).encode())
-    for mesh in (mesh for node in scene.nodes for mesh in node.meshes):
-        content.update(mesh.material.encode())
-        for array in (mesh.positions_m, mesh.normals, mesh.uvs, mesh.colours, mesh.triangles):
-            content.update(array.tobytes())
-    for name, texture in scene.textures.items():
-        content.update(name.encode() + texture.tobytes())
+    for part in content_of(scene):
+        content.update(part)
     return content.hexdigest()[:16]
 
 

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from tracker.measurements import Frame, Matrix
 
 Pixels = NDArray[np.float32]
+#: Share of the strongest corner's response that a corner must have.
+QUALITY = 0.005
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,11 +7,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracker.features import Features, Pixels, View
+from tracker.features import QUALITY, Features, Pixels, View
 from tracker.measurements import Frame, Image
 
-#: Share of the strongest corner's response that a corner must have.
-QUALITY = 0.005
 #: A feature that comes back this far from where it started was lost on the way.
 RETURN_PX = 1.0
 
