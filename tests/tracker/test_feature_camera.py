@@ -42,10 +42,10 @@ class NoPicture:
         raise AssertionError("a feature camera has no pictures")
 
 
-def _world(count: int = 6000, rim_share: float = 0.0) -> Points:
-    """Points in a ball of 40 m; the camera looks along z."""
+def _world(count: int = 6000, rim_share: float = 0.0, size_m: float = 40.0) -> Points:
+    """Points all about; the camera looks along z."""
     rng = np.random.default_rng(5)
-    points = rng.uniform(-40.0, 40.0, (count, 3))
+    points = rng.uniform(-size_m, size_m, (count, 3))
     return Points(points, np.sort(rng.uniform(0.1, 1.0, count))[::-1], rng.random(count) < rim_share)
 
 
@@ -152,21 +152,17 @@ def test_the_front_end_finds_the_motion_without_a_picture() -> None:
     """Rotation and direction against truth, the same twice, others for another seed."""
     runs = []
     for seed in (1, 1, 2):
-        front_end = VisionFrontEnd(CAMERA, source=_camera(Faults(), seed=seed))
+        front_end = VisionFrontEnd(CAMERA, source=_camera(Faults(), _world(size_m=10.0), seed))
         runs.append([motion for motion in map(front_end.step, map(_frame, range(20))) if motion is not None])
     first, again, other = runs
     assert len(first) >= 18
     assert any(motion.is_keyframe for motion in first)
-    off_deg = []
-    for motion in first:
-        off = motion.R_key_cam.T @ _pose(motion.t_key_ns)[:3, :3].T @ _pose(motion.t_ns)[:3, :3]
-        off_deg.append(np.degrees(np.arccos(np.clip((np.trace(off) - 1.0) / 2.0, -1.0, 1.0))))
-    assert np.median(off_deg) < 0.1
-    assert max(off_deg) < 0.5
     told = [motion for motion in first if any(motion.direction_key)]
-    assert told
+    assert len(told) >= 5
     for motion in told:
-        assert abs((_pose(motion.t_key_ns)[:3, :3] @ np.array(motion.direction_key))[0]) > np.cos(np.radians(15.0))
+        off = motion.R_key_cam.T @ _pose(motion.t_key_ns)[:3, :3].T @ _pose(motion.t_ns)[:3, :3]
+        assert np.degrees(np.arccos(np.clip((np.trace(off) - 1.0) / 2.0, -1.0, 1.0))) < 0.3
+        assert (_pose(motion.t_key_ns)[:3, :3] @ np.array(motion.direction_key))[0] > np.cos(np.radians(15.0))
     for a, b in zip(first, again, strict=True):
         np.testing.assert_array_equal(a.R_key_cam, b.R_key_cam)
     assert any((a.R_key_cam != b.R_key_cam).any() for a, b in zip(first, other, strict=False))
