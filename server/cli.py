@@ -139,15 +139,20 @@ def evaluate(
             metavar="KEY=VALUE",
         ),
     ] = None,
+    report: Annotated[
+        Path | None, typer.Option(help="Write tables and figures here, as index.html and files.", metavar="DIR")
+    ] = None,
 ) -> None:
     """Measure estimators on recorded walks: the paper's filter error, and the error against truth where there is one."""
     import cv2
 
     from server.evaluation import evaluate as evaluate_logs
     from server.evaluation import print_table, write_json
+    from server.plots.trace import Trace, trace_of
     from server.settings import choose
 
     settings = choose(change or ())
+    traces: list[Trace] = []
     cv2.setNumThreads(1)  # a rig has other work for its cores, and figures should not depend on how many there are
     with _progress("evaluating") as bar:
         task = bar.add_task("", total=1.0)
@@ -157,9 +162,15 @@ def evaluate(
             poses,
             lambda label, done: bar.update(task, description=label, completed=done),
             settings,
+            (lambda result: traces.append(trace_of(result))) if report is not None else (lambda result: None),
         )
     if json_file is not None:
         write_json(evaluation, json_file)
+    if report is not None:
+        from server.report import report_of, write_report  # late: matplotlib takes a second
+
+        page = write_report(report_of(evaluation, traces, load_site(SITE)), report)
+        err.print(f"agora: the report is {page}", soft_wrap=True)
     wide = out if out.is_terminal else Console(highlight=False, width=170)
     print_table(evaluation, wide)
 

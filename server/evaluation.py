@@ -36,8 +36,17 @@ def evaluate(
     poses: Path | None,
     progress: Progress,
     settings: Settings | None = None,
+    each: Callable[[Run], None] = lambda result: None,
 ) -> Evaluation:
     """Run every log through every estimator (none named: all) that its sensors allow.
+
+    Args:
+        paths: The logs.
+        estimators: By name.
+        poses: Where poses are written, if at all.
+        progress: Called with what is being done, and the share of it that is.
+        settings: None for the defaults.
+        each: Given every run as it ends, for what needs more of it than its figures.
 
     Raises:
         InputError: A log cannot be read, an estimator does not exist, or nothing could be run.
@@ -54,6 +63,7 @@ def evaluate(
             label = f"{log.name}  {name}"
             result = run(log, name, settings, progress=lambda done, label=label: progress(label, done))  # type: ignore[misc]
             evaluation.runs.append(figures(result))
+            each(result)
             if poses is not None:
                 _write_tum(result, poses)
     if not evaluation.runs:

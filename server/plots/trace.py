@@ -1,6 +1,6 @@
 """A run reduced to what figures draw: a few arrays, five samples a second."""
 
-from dataclasses import dataclass, fields
+from dataclasses import astuple, dataclass, fields
 from math import hypot
 from pathlib import Path
 from typing import Any
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracker import score
+from tracker.estimator import Origin
 from tracker.evaluate import Run
 from tracker.geodesy import SiteFrame
 from tracker.geometry import rpy_from_wxyz
@@ -25,6 +26,8 @@ class Trace:
 
     log: str
     estimator: str
+    origin: Origin
+    """Where the site frame is laid."""
     t_s: Array
     """(n,)"""
     p_site_m: Array
@@ -84,6 +87,7 @@ class Trace:
         path.parent.mkdir(parents=True, exist_ok=True)
         part = path.with_suffix(".part.npz")
         arrays: dict[str, Any] = {field.name: np.asarray(getattr(self, field.name)) for field in fields(self)}
+        arrays["origin"] = np.array(astuple(self.origin))
         np.savez_compressed(part, **arrays)
         part.replace(path)
 
@@ -92,7 +96,8 @@ class Trace:
         """Read what `save` wrote."""
         with np.load(path, allow_pickle=False) as file:
             arrays = {field.name: file[field.name] for field in fields(cls)}
-        return cls(str(arrays.pop("log")), str(arrays.pop("estimator")), **arrays)
+        log, estimator, origin = (arrays.pop(name) for name in ("log", "estimator", "origin"))
+        return cls(str(log), str(estimator), Origin(*origin.tolist()), **arrays)
 
 
 def trace_of(run: Run) -> Trace:
@@ -113,6 +118,7 @@ def trace_of(run: Run) -> Trace:
     return Trace(
         log=run.log,
         estimator=run.estimator,
+        origin=run.origin,
         t_s=_seconds(run, [pose.t_ns for pose in poses]),
         p_site_m=track.p_m,
         rpy_rad=_rpy(track.wxyz),

@@ -42,7 +42,7 @@ def test_a_file_gives_it_back(run: Run, tmp_path: Path) -> None:
     written = trace_of(run)
     written.save(tmp_path / "deep" / "walk.npz")
     read = Trace.load(tmp_path / "deep" / "walk.npz")
-    assert (read.log, read.estimator) == ("walk", "gps-imu/famm")
+    assert (read.log, read.estimator, read.origin) == ("walk", "gps-imu/famm", run.origin)
     for name in ("t_s", "p_site_m", "rpy_rad", "truth_rpy_rad", "update_m", "fix_site_m", "state_covariance"):
         np.testing.assert_array_equal(getattr(read, name), getattr(written, name))
     assert read.model.tolist() == written.model.tolist()

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from server.plots.trace import Trace
+from tracker.simulate import AGORA_ORIGIN
 
 
 def trace(estimator: str = "gps-imu/famm", off_m: float = 2.0, n: int = 200) -> Trace:
@@ -17,6 +18,7 @@ def trace(estimator: str = "gps-imu/famm", off_m: float = 2.0, n: int = 200) -> 
     return Trace(
         log="walk",
         estimator=estimator,
+        origin=AGORA_ORIGIN,
         t_s=t_s,
         p_site_m=truth + np.array([0.0, off_m, 0.0]),
         rpy_rad=angles + np.array([0.0, 0.0, np.radians(3.0)]),
