@@ -11,6 +11,9 @@ from server.plots.style import Picture
 
 _MIME = {"svg": "image/svg+xml", "png": "image/png"}
 
+#: A cell with more letters than this may be broken into lines.
+_LONG_CELL = 44
+
 _STYLE = """
 :root {
   color-scheme: light dark;
@@ -46,7 +49,8 @@ table { border-collapse: collapse; font-size: .9rem; font-variant-numeric: tabul
 th, td { padding: .28rem .65rem; text-align: right; white-space: nowrap; }
 th { border-bottom: 2px solid var(--line); vertical-align: bottom; white-space: normal; }
 td { border-bottom: 1px solid var(--line); }
-.left { text-align: left; white-space: normal; }
+.left { text-align: left; }
+.long { white-space: normal; min-width: 16rem; }
 @media print {
   @page { margin: 16mm; }
   :root { --ink: #000; --faint: #333; --paper: #fff; --line: #bbb; --link: #000; --band: #fff; }
@@ -99,7 +103,7 @@ def _picture(picture: Picture, names: Mapping[str, str]) -> str:
 
 def _grid(grid: Grid, names: Mapping[str, str]) -> str:
     def row(cells: tuple[str, ...], tag: str) -> str:
-        sides = (' class="left"' if place < grid.left else "" for place in range(len(cells)))
+        sides = (_side(cell, place < grid.left) for place, cell in enumerate(cells))
         return (
             "<tr>"
             + "".join(f"<{tag}{side}>{_inline(cell, names)}</{tag}>" for cell, side in zip(cells, sides, strict=True))
@@ -112,6 +116,12 @@ def _grid(grid: Grid, names: Mapping[str, str]) -> str:
         f'<figure class="table" id="{grid.name}"><figcaption>{caption}</figcaption><div class="scroll"><table>\n'
         f"<thead>{row(grid.head, 'th')}</thead>\n<tbody>\n{body}\n</tbody></table></div></figure>"
     )
+
+
+def _side(cell: str, left: bool) -> str:
+    if not left:
+        return ""
+    return ' class="left long"' if len(cell) > _LONG_CELL else ' class="left"'
 
 
 def _contents(document: Document, names: Mapping[str, str]) -> str:

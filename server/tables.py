@@ -54,6 +54,12 @@ def filter_error_grid(rows: Sequence[Figures], sensors: str, name: str) -> Grid 
     return Grid(name, caption, head, tuple(cells))
 
 
+def once(rows: Sequence[tuple[str, ...]]) -> tuple[tuple[str, ...], ...]:
+    """Return rows whose first cell is said only where it changes: a table's groups are seen at a glance."""
+    firsts = ["", *(row[0] for row in rows)]
+    return tuple((row[0] if row[0] != before else "", *row[1:]) for row, before in zip(rows, firsts, strict=False))
+
+
 @dataclass(frozen=True)
 class _Column:
     head: str
@@ -93,7 +99,7 @@ def truth_grid(rows: Sequence[Figures], name: str) -> Grid | None:
         "(jitter), the squared error over what the covariance promised, for each dimension (NEES: 1 is honest, more is too sure "
         "of itself), and how many pixels of a 1280 pixel, 60 degree picture an object ahead is drawn beside its place."
     )
-    return Grid(name, caption, ("log", "estimator", *(column.head for column in _TRUTH)), tuple(cells), left=2)
+    return Grid(name, caption, ("log", "estimator", *(column.head for column in _TRUTH)), once(cells), left=2)
 
 
 def share_grid(rows: Sequence[Figures], name: str) -> Grid | None:
@@ -114,6 +120,6 @@ def share_grid(rows: Sequence[Figures], name: str) -> Grid | None:
         name,
         "Motion models in force. Per cent of each run's updates.",
         ("log", "estimator", *models),
-        tuple(cells),
+        once(cells),
         left=2,
     )

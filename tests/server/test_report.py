@@ -12,7 +12,7 @@ from server.cli import SITE, app
 from server.evaluation import Evaluation
 from server.page import html
 from server.report import report_of, slug_of, write_report
-from server.tables import arrow, filter_error_grid, truth_grid
+from server.tables import arrow, filter_error_grid, once, truth_grid
 from tests.server.plots.traces import trace, without_truth
 from tracker.errors import InputError
 from tracker.log_writer import LogWriter
@@ -94,6 +94,10 @@ def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="cannot be written to"):
         write_report(report_of(Evaluation(ROWS), [trace(name) for name in NAMES]), tmp_path / "file" / "report")
+
+
+def test_a_group_is_named_once() -> None:
+    assert once([("a", "1"), ("a", "2"), ("b", "3")]) == (("a", "1"), ("", "2"), ("b", "3"))
 
 
 def test_names_for_files_and_links() -> None:
