@@ -5,6 +5,7 @@ lay on, so subtracting it is right for no other attitude; here only the gyroscop
 """
 
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import sqrt
 
@@ -59,7 +60,7 @@ class RestCalibration:
         if sample.t_ns - self._block[0].t_ns < REST_BLOCK_S * 1e9:
             return
         block, self._block = self._block, []
-        if not _at_rest(block):
+        if not at_rest(block):
             self.finished = self._moved = self.samples > 0
             self._rest.clear()
             return
@@ -86,7 +87,8 @@ def _believed(means: list[float]) -> float:
     return mean * OFFSET_SIGMA_RAD_S**2 / (OFFSET_SIGMA_RAD_S**2 + std**2 / (len(means) - 1))
 
 
-def _at_rest(block: list[ImuSample]) -> bool:
+def at_rest(block: Sequence[ImuSample]) -> bool:
+    """Return whether the samples of half a second look like a rig that lies, or a person who stands, still."""
     for axis in range(3):
         mean, std = _mean_std([sample.gyro_rad_s[axis] for sample in block])
         if std > REST_GYRO_STD_RAD_S or abs(mean) > REST_GYRO_MEAN_RAD_S:
