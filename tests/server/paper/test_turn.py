@@ -60,7 +60,16 @@ def test_the_mounting_is_found(look: Turns) -> None:
 
 def test_a_log_without_camera_is_refused(tmp_path: Path) -> None:
     with LogWriter(tmp_path / "blind.mcap", Rig(), AGORA_ORIGIN, t_start_ns=START_NS) as writer:
-        writer.write(GpsFix(START_NS, START_NS, AGORA_ORIGIN.lat_deg, AGORA_ORIGIN.lon_deg, 88.4))
+        writer.write(
+            GpsFix(
+                START_NS,
+                START_NS,
+                AGORA_ORIGIN.lat_deg,
+                AGORA_ORIGIN.lon_deg,
+                88.4,
+                (4.0, 0.0, 0.0, 0.0, 4.0, 0.0, 0.0, 0.0, 9.0),
+            )
+        )
     with pytest.raises(MissingSensor, match=r"blind has no calibrated camera"):
         turns(Log.open(tmp_path / "blind.mcap"))
 
