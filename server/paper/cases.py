@@ -48,17 +48,17 @@ class Seen:
     motions: list[VisualMotion]
 
 
-def sources_key(*more: object) -> str:
-    """Return a name for everything that a case's results depend on: the tracker, the site and what makes its measurements."""
+def sources_key(*names: str) -> str:
+    """Return a name for all that results depend on: tracker, site, what makes measurements, and the named files beside this."""
     files = [
         *(ROOT / "tracker").rglob("*.py"),
         *(ROOT / "assets").rglob("*.py"),
         *SITE.glob("*.toml"),
         *(ROOT / "server").glob("*motions.py"),
         *(ROOT / "server").glob("feature_*.py"),
-        *(ROOT / "server" / "paper").glob("*.py"),
+        *(ROOT / "server" / "paper" / f"{name}.py" for name in ("cases", *names)),
     ]
-    return content_key(files, *more)
+    return content_key(files)
 
 
 def see(case: Case) -> Seen:

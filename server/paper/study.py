@@ -37,7 +37,7 @@ def study(path: Path, seeds: Iterable[int] = SEEDS, jobs: int = 1, folder: Path 
         for case in sorted((Case(dataset, seed) for dataset in DATASETS for seed in seeds), key=_cost, reverse=True)
     ]
     with progress_bar("study") as bar:
-        results = run_tasks(tasks, key=sources_key(), jobs=jobs, folder=folder, done=bar)
+        results = run_tasks(tasks, key=sources_key("study"), jobs=jobs, folder=folder, done=bar)
     rows = sorted((row for rows in results for row in rows), key=_order)
     sigmas = mean_sigmas(rows)
     for row in rows:

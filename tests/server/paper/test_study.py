@@ -106,5 +106,5 @@ def test_members_of_a_case_saw_the_same(runs: list[Run]) -> None:
 
 def test_the_key_is_of_the_sources() -> None:
     """It does not change by itself, and what is asked for is part of it."""
-    assert sources_key() == sources_key() != sources_key("other")
+    assert sources_key("study") == sources_key("study") != sources_key("record")
     assert (SITE / "site.toml").is_file()
