@@ -16,7 +16,7 @@ from tracker.measurements import Frame, Image, Matrix, VisualMotion
 from tracker.simulate import Walk
 from tracker.vision import VisionFrontEnd, VisionSettings
 
-VERSION = 1
+VERSION = 2
 """Of the front end and the feature camera: raise it when their motions change for the same settings."""
 FOLDER = Path("build/tracks")
 
