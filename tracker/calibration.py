@@ -1,7 +1,8 @@
 """What the paper does to raw inertial samples: offsets found at rest, and the mean of a few samples.
 
-Its table of offsets subtracts the accelerometer's mean at rest too. That mean contains gravity and the tilt of the table it
-lay on, so subtracting it is right for no other attitude; here only the gyroscope's offset is removed (research finding 2b).
+Its table of offsets ("Calibration parameters found for accelerometer and gyroscope") subtracts the accelerometer's mean at rest
+too. That mean contains gravity and the tilt of the table it lay on, so subtracting it is right for no other attitude; here only
+the gyroscope's offset is removed.
 """
 
 from collections import deque

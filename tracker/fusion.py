@@ -1,4 +1,4 @@
-"""The paper's 12-state Kalman filter: x = (P, V, R, Omega), eq. 9, with F of eq. 10 and its velocity coefficients.
+"""The paper's 12-state Kalman filter: x = (P, V, R, Omega), eq. 6, with F of eq. 7 and its velocity coefficients.
 
 F, H and a diagonal Q and R couple each of the six values (position, then roll, pitch, yaw) only with its own rate, so the
 12-state filter is exactly six filters of two states. They are computed as such, in plain floats: a sixth of the time of
@@ -61,7 +61,7 @@ class FusionFilter:
         return filter_
 
     def predict(self, dt_s: float, model: MotionModel) -> None:
-        """Apply F with the model's coefficients: value += c rate dt.
+        """Apply F with the model's coefficients: value += c rate dt (eqs. 11 and 12).
 
         With c = 0 the coupling is gone from F: the rate is kept, and what is learnt of the value teaches nothing of it. Its
         own process noise stays, else a velocity could never be learnt again.
@@ -91,11 +91,11 @@ class FusionFilter:
         self.value[5] = wrap_rad(self.value[5] + yaw_rad)
 
     def innovation(self, position_m: Vector3, rotation_rad: Vector3) -> tuple[Vector3, Vector3]:
-        """Return y = z - H x, eq. 13, in its two parts; angles by the shorter way round."""
+        """Return y = z - H x, eq. 10, in its two parts; angles by the shorter way round."""
         return innovation(self.value, position_m, rotation_rad)
 
     def update(self, y_p_m: Vector3, y_r_rad: Vector3, position_var_m2: Vector3) -> None:
-        """Take an innovation in, eq. 12."""
+        """Take an innovation in, eq. 9."""
         rotation_var = self.settings.rotation_sigma_rad**2
         for axis in range(3):
             self._update_axis(axis, y_p_m[axis], position_var_m2[axis])
@@ -128,7 +128,7 @@ class FusionFilter:
         return (self.value[3], self.value[4], self.value[5])
 
     def state(self) -> Matrix:
-        """Return x, (12,), in the paper's order (P, V, R, Omega)."""
+        """Return x, (12,), of eq. 6: (P, V, R, Omega)."""
         return np.array([*self.value[:3], *self.rate[:3], *self.value[3:], *self.rate[3:]])
 
     def covariance(self) -> Matrix:
@@ -143,7 +143,7 @@ class FusionFilter:
 
 
 def transition(dt_s: float, model: MotionModel) -> Matrix:
-    """Return F, (12, 12), of eq. 10, its velocity terms multiplied by the model's coefficients (eqs. 14 and 15)."""
+    """Return F, (12, 12), of eq. 7, its velocity terms multiplied by the model's coefficients (eqs. 11 and 12)."""
     F = np.eye(12)
     for axis in range(3):
         F[axis, axis + 3] = model.i * dt_s
@@ -152,7 +152,7 @@ def transition(dt_s: float, model: MotionModel) -> Matrix:
 
 
 def innovation(value: list[float], position_m: Vector3, rotation_rad: Vector3) -> tuple[Vector3, Vector3]:
-    """Return z - H x for the six values of H x, eq. 13, in its two parts; angles by the shorter way round."""
+    """Return z - H x for the six values of H x, eq. 10, in its two parts; angles by the shorter way round."""
     x, y, z, roll, pitch, yaw = value
     y_r = (wrap_rad(rotation_rad[0] - roll), wrap_rad(rotation_rad[1] - pitch), wrap_rad(rotation_rad[2] - yaw))
     return (position_m[0] - x, position_m[1] - y, position_m[2] - z), y_r

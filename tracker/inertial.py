@@ -1,4 +1,4 @@
-"""Velocity and position by integration (m_imu): the specific force turned to ENU, gravity removed, integrated twice.
+"""Velocity and position by integration (m_imu, eqs. 4 and 5): the specific force turned to ENU, gravity removed, integrated twice.
 
 The paper integrates within four samples (16 ms), which gives micrometres; its conclusion says that the IMU carries the position
 from one GPS fix to the next, and that is what is done here: displacements are read between any two times of the last seconds.
@@ -61,7 +61,10 @@ class InertialPath:
         return self._states[-1] if self._states else None
 
     def step(self, mean: MeanSample, wxyz_level_body: Wxyz, yaw_offset_rad: float | None) -> None:
-        """Integrate one mean sample; while north is unknown its force has no direction, and the velocity is only held."""
+        """Integrate one mean sample twice (eqs. 4 and 5).
+
+        While north is unknown its force has no direction, and the velocity is only held.
+        """
         self._pace.step(mean.accel_m_s2, wxyz_level_body, mean.dt_s)
         last = self.newest
         if last is None:

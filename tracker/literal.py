@@ -2,7 +2,7 @@
 
 Reference:
     Bostanci et al., Sensor fusion of camera, GPS and IMU using fuzzy adaptive multiple motion models, arXiv 1512.02766,
-    the equation of m_P ("Tr x m_gps + m_imu"), eqs. for v and x of the IMU, and the table of calibration offsets.
+    eq. 8 (m_P), eqs. 4 and 5 (v and x of the IMU), and the table of calibration offsets.
 """
 
 import numpy as np
@@ -13,7 +13,7 @@ from tracker.measurements import Matrix, Vector3
 
 
 def m_P_enu(Tr: Matrix, m_gps_m: Vector3, m_imu_m: Vector3) -> Vector3:
-    """Return Tr x m_gps + m_imu with m_gps in the site's ENU frame: a head that turns swings the walker about its origin.
+    """Return Tr x m_gps + m_imu (eq. 8) with m_gps in the site's ENU frame: a head that turns swings the walker about its origin.
 
     Args:
         Tr: (4, 4), of eq. 1.
@@ -24,7 +24,7 @@ def m_P_enu(Tr: Matrix, m_gps_m: Vector3, m_imu_m: Vector3) -> Vector3:
 
 
 def m_P_ecef(Tr: Matrix, m_gps_m: Vector3, m_imu_m: Vector3, site: SiteFrame) -> Vector3:
-    """Return Tr x m_gps + m_imu with m_gps in ECEF, as eqs. 2 and 3 give it, brought to site.
+    """Return Tr x m_gps + m_imu (eq. 8) with m_gps in ECEF, as eqs. 2 and 3 give it, brought to site.
 
     A tenth of a degree of camera rotation turns the walker about the Earth's centre, 11 km away.
     """
@@ -34,7 +34,7 @@ def m_P_ecef(Tr: Matrix, m_gps_m: Vector3, m_imu_m: Vector3, site: SiteFrame) ->
 
 
 class FourSampleIntegral:
-    """m_imu to the letter: four samples integrated twice from v(0) = 0, in the rig's own axes: micrometres.
+    """m_imu to the letter (eqs. 4 and 5): four samples integrated twice from v(0) = 0, in the rig's own axes: micrometres.
 
     The accelerometer's mean at rest, gravity and the table's tilt in it, is subtracted as the paper's table of offsets has it.
     """
