@@ -40,7 +40,11 @@ out = Console(highlight=False)
 err = Console(stderr=True, highlight=False)
 
 LogFile = Annotated[Path, typer.Argument(help="A walk: a ROS 2 bag in one MCAP file.", metavar="LOG")]
-EstimatorName = Annotated[str | None, typer.Option("--estimator", help=f"One of {', '.join(ESTIMATORS)}.")]
+_MODELS = ", ".join(dict.fromkeys(name.rpartition("/")[2] for name in ESTIMATORS if "/" in name))
+EstimatorName = Annotated[
+    str | None,
+    typer.Option("--estimator", help=f"gps-imu/MODEL or camera-gps-imu/MODEL, MODEL one of {_MODELS}; or truth."),
+]
 Anchor = Annotated[
     Literal["site", "here"],
     typer.Option(help="`here` lays the site's origin at the walk's first fix: any recording then shows the square."),
