@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from server.paper.cases import Case, Seen, see
-from tracker.cycle import Cycle, CycleFilter
+from tracker.cycle import Cycle, CycleFilter, InnovationReading
 from tracker.estimators import SELECTORS, SENSORS
 from tracker.family import PaperFamily
 from tracker.fusion import FusionSettings
@@ -67,7 +67,11 @@ def read_recording(held: dict[str, Any]) -> Recording:
 
 
 def refilter(
-    recording: Recording, selector: MotionSelector, settings: FusionSettings, var_scale: float = 1.0
+    recording: Recording,
+    selector: MotionSelector,
+    settings: FusionSettings,
+    var_scale: float = 1.0,
+    innovation: InnovationReading = "metres",
 ) -> Figures:
     """Filter a recording and return its figures.
 
@@ -76,12 +80,13 @@ def refilter(
         selector: Chooses the motion model; newly built.
         settings: Q and the rotation's R.
         var_scale: What the position's R is multiplied by.
+        innovation: What the selector is given.
 
     Returns:
         Means of the filter error (m and rad), ATE and the RMS change of the horizontal error from one update to the next
         (`step_m`, m: what is seen as trembling), and the share of the updates that P0R0 predicted.
     """
-    filter_ = CycleFilter(selector, settings)
+    filter_ = CycleFilter(selector, settings, innovation)
     p_m, errors_m, errors_rad, at_rest = [], [], [], 0
     for cycle in recording.cycles:
         seen = filter_.step(cycle if var_scale == 1.0 else _scaled(cycle, var_scale))

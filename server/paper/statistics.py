@@ -71,7 +71,7 @@ def paired(ours: Sequence[float], theirs: Sequence[float]) -> Figures:
     if a.shape != b.shape or a.ndim != 1 or len(a) < 2:
         raise ValueError(f"expected two rows of the same n >= 2 seeds, got shapes {a.shape} and {b.shape}")
     difference, n = a - b, len(a)
-    half = float(student_t.ppf(0.975, n - 1)) * float(np.std(difference, ddof=1)) / np.sqrt(n)
+    half = float(student_t.ppf(0.975, n - 1) * np.std(difference, ddof=1) / np.sqrt(n))
     mean = float(np.mean(difference))
     drawn = np.random.default_rng(0).integers(0, n, (RESAMPLES, n))
     low, high = np.percentile(np.mean(difference[drawn], axis=1), [2.5, 97.5]).tolist()

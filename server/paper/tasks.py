@@ -62,7 +62,7 @@ def run_tasks(
         TasksFailed: A task raised an exception. The others are run first, and need not be run again.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    files = {task.name: folder / f"{task.name}-{key}.json" for task in tasks}
+    files = {task.name: kept_file(folder, task.name, key) for task in tasks}
     missing = [task for task in tasks if not files[task.name].is_file()]
     finished, failed = len(tasks) - len(missing), []
     done(finished, len(tasks))
@@ -76,6 +76,11 @@ def run_tasks(
     if failed:
         raise TasksFailed(f"{len(failed)} of {len(tasks)} failed, the first: {failed[0]}")
     return [json.loads(files[task.name].read_text(encoding="utf-8")) for task in tasks]
+
+
+def kept_file(folder: Path, name: str, key: str) -> Path:
+    """Return where a task's result is kept."""
+    return folder / f"{name}-{key}.json"
 
 
 def _outcomes(tasks: Sequence[Task], jobs: int) -> Iterator[tuple[str, Callable[[], Result]]]:
