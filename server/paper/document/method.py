@@ -3,6 +3,7 @@
 from server.blocks import Block, Grid, Heading, Items, Text
 from server.paper.document.results import Results
 from server.paper.document.words import percent
+from server.paper.parts import PARTS
 from server.settings import all_settings
 from server.tables import number, once
 from tracker.choreography import DATASET_DURATION_S, DATASET_UPDATES
@@ -20,7 +21,7 @@ _WALKS = {
 
 def method(results: Results) -> list[Block]:
     """Return the section on method."""
-    return [Heading("Method"), *_walks(results), *_readings(results)]
+    return [Heading("Method"), *_walks(results), *_readings(results), *_parts()]
 
 
 def _walks(results: Results) -> list[Block]:
@@ -59,7 +60,7 @@ _WALK_HEAD = ("dataset", "walk", "updates", "seconds")
 
 _READINGS = (
     "`m_P = keyframe_local` (default): the camera's displacement since the keyframe nearest to the fix is added to the fix, and "
-    "`m_imu` is what was walked since. `literal_enu` and `literal_ecef` multiply the position by the whole of `Tr`, as eq. 11 is "
+    "`m_imu` is what was walked since. `literal_enu` and `literal_ecef` multiply the position by the whole of `Tr`, as eq. 8 is "
     "printed: the rotation of the head then turns the visitor about the site's origin, or about the centre of the Earth.",
     "`m_imu = sane` (default): accelerations are turned into the site's axes, gravity is removed, and the integral starts anew "
     "at each fix. `literal` subtracts the mean at rest (gravity included, for one attitude) and integrates four samples: 16 ms, "
@@ -118,7 +119,7 @@ def _reading_grid(readings: Figures) -> Grid:
         )
     caption = (
         f"What each reading does to FAMM on dataset {readings['dataset']}, seed {readings['seed']}. The literal ones are here to "
-        "be seen, not to be used."
+        "be seen, not to be used; with `nis` the breakpoints of the memberships are read as standard deviations."
     )
     head = ("sensors", "reading", "filter error, m", "change", "ATE, m", "RPE 10 s, m", "P0R0, %")
     return Grid("readings", caption, head, once(rows), left=2)
@@ -127,3 +128,13 @@ def _reading_grid(readings: Figures) -> Grid:
 def _size(value: float | None) -> str:
     """Return metres; the Earth's radius is no number for two decimals."""
     return number(value, 3) if value is None or value < 1000.0 else f"{value:.2g}"
+
+
+def _parts() -> list[Block]:
+    """Return the table of the paper's parts, which a test walks."""
+    rows = tuple((part.name, f"`{part.where}`", f"`{part.test}`") for part in PARTS)
+    caption = (
+        "Every part of the paper, where it is in the code, and a test that fails when it is wrong. Equations are counted as the "
+        "paper numbers them. The docstring at each place cites the part; a test walks this table."
+    )
+    return [Heading("The parts", 3), Grid("parts", caption, ("part of the paper", "code", "test"), rows, left=3)]

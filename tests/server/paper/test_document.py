@@ -170,6 +170,28 @@ def test_the_printed_tables() -> None:
     assert FILTER_ERRORS[3, "gps-imu"].change_percent == pytest.approx(-58.47, abs=0.01)
 
 
+def test_what_each_reading_does() -> None:
+    """The default first; a tenth more is a change in per cent, a million times more a factor."""
+
+    def row(sensors: str, changes: list[str], error: float) -> Figures:
+        return {
+            "sensors": sensors,
+            "changes": changes,
+            "filter_error_m": {"mean": error},
+            "truth": {"ate_rmse_m": error, "rpe_10s_m": None},
+            "motion_model_share": {"P0R0": 0.25},
+        }
+
+    rows = [row("gps-imu", [], 0.5), row("gps-imu", ["a=b"], 0.55), row("gps-imu", ["m_P=literal_ecef"], 500_000.0)]
+    document = compose(Results(readings={"dataset": 4, "seed": 1, "rows": rows}), {})
+    grid = next(b for b in document.blocks if isinstance(b, Grid) and b.name == "readings")
+    assert [cells[1:5] for cells in grid.rows] == [
+        ("defaults", "0.500", "+0.0 %", "0.500"),
+        ("`a=b`", "0.550", "+10.0 %", "0.550"),
+        ("`m_P=literal_ecef`", "5e+05", "× 1e+06", "5e+05"),
+    ]
+
+
 def test_results_are_read_from_files(tmp_path: Path) -> None:
     (tmp_path / "attitude.json").write_text(json.dumps(ATTITUDE))
     results = Results.read(tmp_path)
