@@ -68,11 +68,11 @@ class Faults:
     """ beyond so many, because it is blurred."""
     drift_spread: float = 0.4
     """Deviation of the logarithm of that from corner to corner and step to step."""
-    kept_share: float = 0.96
+    kept_share: float = 0.91
     """Of the drift so far; the rest goes with every step, for most of it is where pixels happen to lie on the corner."""
-    slide: float = 0.035
+    slide: float = 0.025
     """What two outlines make goes with neither: so far, per pixel of parallax, in the median of corners on a rim,"""
-    slide_spread: float = 1.15
+    slide_spread: float = 1.4
     """ and the deviation of its logarithm."""
     slip_rate: float = 0.001
     """Share of steps that go wrong by far more;"""
