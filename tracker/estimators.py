@@ -17,6 +17,9 @@ from tracker.motion import (
     ReducedMotion,
 )
 from tracker.paper import PaperEstimator, PaperSettings
+from tracker.precise.compass import Compass
+from tracker.precise.estimator import PreciseEstimator
+from tracker.precise.settings import PreciseSettings
 from tracker.rig import Rig
 from tracker.truth import TruthEstimator
 
@@ -30,7 +33,12 @@ SELECTORS: dict[str, type[MotionSelector]] = {
 }
 SENSORS = ("gps-imu", "camera-gps-imu")
 
-ESTIMATORS: tuple[str, ...] = (*(f"{sensors}/{selector}" for sensors in SENSORS for selector in SELECTORS), "truth")
+PRECISE = "precise"
+
+ESTIMATORS: tuple[str, ...] = (
+    *(f"{sensors}/{selector}" for sensors in SENSORS for selector in (*SELECTORS, PRECISE)),
+    "truth",
+)
 DEFAULT_ESTIMATOR = "camera-gps-imu/famm"
 
 
@@ -39,6 +47,7 @@ class Settings:
     """Settings of every estimator."""
 
     paper: PaperSettings = field(default_factory=PaperSettings)
+    precise: PreciseSettings = field(default_factory=PreciseSettings)
 
 
 class Contents(Protocol):
@@ -80,15 +89,25 @@ def build(
     check_name(name)
     if name == "truth":
         return TruthEstimator(SiteFrame(origin).T_from(truth_origin) if truth_origin else np.eye(4))
-    sensors, selector = name.rsplit("/", 1)
+    sensors, kind = name.rsplit("/", 1)
+    uses_camera, settings = sensors.startswith("camera"), settings or Settings()
+    if kind == PRECISE:
+        return PreciseEstimator(
+            name,
+            origin=origin,
+            rig=rig,
+            compass=Compass(declination_rad),
+            uses_camera=uses_camera,
+            settings=settings.precise,
+        )
     return PaperEstimator(
         name,
-        SELECTORS[selector](),
+        SELECTORS[kind](),
         origin=origin,
         rig=rig,
         declination_rad=declination_rad,
-        uses_camera=sensors.startswith("camera"),
-        settings=(settings or Settings()).paper,
+        uses_camera=uses_camera,
+        settings=settings.paper,
     )
 
 
@@ -108,7 +127,8 @@ def missing_sensors(name: str, contents: Contents, rig: Rig) -> str | None:
         words
         for words, is_there in (
             ("no IMU", counts.get("imu", 0) > 0),
-            ("no GPS", counts.get("gps", 0) > 0),
+            # without a receiver the precise one is an attitude filter
+            ("no GPS", counts.get("gps", 0) > 0 or name.endswith(PRECISE)),
             ("no camera", not name.startswith("camera") or counts.get("frames", 0) > 0),
             ("no camera calibration", not name.startswith("camera") or not counts.get("frames", 0) or rig.camera),
         )

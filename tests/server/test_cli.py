@@ -159,7 +159,7 @@ def test_evaluate_writes_figures_and_poses(walk: Path, tmp_path: Path) -> None:
     assert result.returncode == 0
     assert "small cannot run camera-gps-imu/famm: it has no camera" in result.stdout
     written = json.loads((tmp_path / "x.json").read_text())
-    models = ("cmm", "famm", "dfa", "imm", "reduced")
+    models = ("cmm", "famm", "dfa", "imm", "reduced", "precise")
     assert [run["estimator"] for run in written["runs"]] == [*(f"gps-imu/{model}" for model in models), "truth"]
     assert {run["log"] for run in written["runs"]} == {"small"}
     assert written["runs"][-1]["truth"]["ate_rmse_m"] < 1e-3

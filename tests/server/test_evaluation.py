@@ -45,7 +45,7 @@ def _printed(evaluation: Evaluation) -> str:
 def test_all_that_the_sensors_allow(walk: Path, tmp_path: Path) -> None:
     """All without a camera run; those with one say what is missing; the files are what other programs read."""
     evaluation = evaluate([walk], (), tmp_path / "poses", _nothing)
-    models = ("cmm", "famm", "dfa", "imm", "reduced")
+    models = ("cmm", "famm", "dfa", "imm", "reduced", "precise")
     assert [row["estimator"] for row in evaluation.runs] == [*(f"gps-imu/{model}" for model in models), "truth"]
     write_json(evaluation, tmp_path / "figures.json")
     found = json.loads((tmp_path / "figures.json").read_text())
@@ -102,7 +102,7 @@ def test_what_cannot_be_done_is_one_sentence(walk: Path, tmp_path: Path) -> None
         ([tmp_path / "none.mcap"], (), MalformedInput, "There is no file"),
         ([walk, text], (), MalformedInput, "is not an MCAP file"),
         ([walk], ("kalman",), UnknownEstimator, "There is no estimator 'kalman'"),
-        ([imu_only], (), MissingSensor, "imu-only has no GPS for gps-imu/cmm"),
+        ([imu_only], ("gps-imu/cmm",), MissingSensor, "imu-only has no GPS for gps-imu/cmm"),
     ):
         with pytest.raises(kind, match=words) as error:
             evaluate(paths, names, None, _nothing)

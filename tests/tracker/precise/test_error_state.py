@@ -1,0 +1,156 @@
+"""The filter's algebra: transition against differences, covariance that stays one, and estimates that honour it."""
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from tracker.geometry import conjugate, exp, log, multiply, normalise, wxyz_from_yaw
+from tracker.measurements import Vector3
+from tracker.precise import observations
+from tracker.precise.error_state import BA, BG, THETA, ErrorState, P, V, inertial_transition, start_covariance
+from tracker.precise.navigation import Biases, Navigation, advance, carried
+from tracker.precise.settings import PreciseSettings
+
+G = 9.8
+SETTINGS = PreciseSettings()
+GYRO, ACCEL = (0.3, -0.2, 0.5), (0.4, 0.3, 9.9)
+
+
+def _state(covariance_scale: float = 1.0) -> ErrorState:
+    nav = Navigation(0, (1.0, 2.0, 3.0), (0.5, -0.4, 0.1), normalise((0.9, 0.1, -0.2, 0.3)))
+    return ErrorState(
+        SETTINGS, nav, Biases(), covariance_scale * start_covariance(SETTINGS, (1.0, 1.0, 1.0), 1.0, 1.0), G
+    )
+
+
+def _advanced(nav: Navigation, biases: Biases) -> Navigation:
+    for step in range(1, 11):
+        nav = advance(nav, step * 2_000_000, GYRO, ACCEL, biases, G)
+    return nav
+
+
+def _difference(a: Navigation, b: Navigation) -> list[float]:
+    """b minus a as the filter's error: position, velocity, left rotation vector."""
+    turn = log(multiply(b.wxyz_site_body, conjugate(a.wxyz_site_body)))
+    return [
+        *(y - x for x, y in zip(a.p_m, b.p_m, strict=True)),
+        *(y - x for x, y in zip(a.v_m_s, b.v_m_s, strict=True)),
+        *turn,
+    ]
+
+
+def test_transition_is_the_derivative_of_the_integral() -> None:
+    start = _state().nav
+    end = _advanced(start, Biases())
+    gained = np.array(end.v_m_s) - start.v_m_s + np.array([0.0, 0.0, G * 0.02])
+    state = _state()
+    Phi = inertial_transition(0.02, state.R_site_body, gained)
+    for column in range(15):
+        error = np.zeros(25)
+        error[column] = 1e-5
+        moved = _state()
+        moved.move(error)
+        numeric = np.array(_difference(end, _advanced(moved.nav, moved.biases))) / 1e-5
+        assert Phi[:9, column] == pytest.approx(numeric, abs=2e-3 if column >= 6 else 1e-6), column
+
+
+def test_a_free_integral_carries_any_state_exactly() -> None:
+    """What a state far away and turned would have become is read from an integral that ran elsewhere."""
+    start = _state().nav
+    elsewhere = Navigation(
+        0, (100.0, -50.0, 7.0), (30.0, 4.0, -9.0), normalise(multiply(exp((0.5, 2.0, 1.0)), (1, 0, 0, 0)))
+    )
+    found = carried(start, elsewhere, _advanced(elsewhere, Biases()), G)
+    assert _difference(found, _advanced(start, Biases())) == pytest.approx([0.0] * 9, abs=1e-9)
+
+
+def test_covariance_stays_a_covariance() -> None:
+    """Ten thousand steps and updates, exact measurements among them."""
+    state, rng = _state(), np.random.default_rng(3)
+    for step in range(1, 10_001):
+        state.advance(step * 20_000_000, GYRO, ACCEL)
+        if step % 50 == 0:
+            state.hold(2)
+        if step % 3 == 0:
+            state.correct(*observations.velocity(state, (0.0, 0.0, 0.0)), 1e-10 * np.eye(3), gated=False)
+        if step % 7 == 0:
+            p: Vector3 = tuple(rng.normal(size=3).tolist())
+            state.correct(*observations.gps_position(state, p, (2.0, 2.0, 4.0), (0.0, 0.0, 0.0)), 0.1 * np.eye(3))
+    state.settle()
+    assert state.covariance == pytest.approx(state.covariance.T, rel=1e-12, abs=1e-15)
+    scale = np.sqrt(np.diag(state.covariance))
+    assert np.all(scale > 0.0)
+    assert np.linalg.eigvalsh(state.covariance / np.outer(scale, scale)).min() > -1e-9
+
+
+def test_an_update_is_the_textbook_s() -> None:
+    state = _state()
+    before, residual = state.covariance.copy(), np.array([0.1, -0.2, 0.05])
+    noise = np.diag([0.2, 0.3, 0.4])
+    state.correct(residual, [(V, np.eye(3))], noise)
+    S = before[V, V] + noise
+    K = before[:, V] @ np.linalg.inv(S)
+    assert state.covariance == pytest.approx(before - K @ S @ K.T)
+    assert np.array(state.nav.v_m_s) == pytest.approx(np.array([0.5, -0.4, 0.1]) + (K @ residual)[V])
+
+
+def test_what_lies_far_out_counts_for_less_and_further_out_for_nothing() -> None:
+    near, far, absurd = _state(), _state(), _state()
+    done = [
+        state.correct(np.array([y, 0.0, 0.0]), [(V, np.eye(3))], 0.01 * np.eye(3))
+        for state, y in ((near, 1.0), (far, 8.0), (absurd, 100.0))
+    ]
+    assert [one.used for one in done] == [True, True, False]
+    assert absurd.nav == _state().nav
+    gain_near, gain_far = near.nav.v_m_s[0] - 0.5, (far.nav.v_m_s[0] - 0.5) / 8.0
+    assert 0.0 < gain_far < 0.7 * gain_near
+
+
+def test_a_held_pose_is_the_present_one_until_the_rig_moves() -> None:
+    state = _state()
+    state.hold(2)
+    cov = state.covariance
+    assert cov[25:31, 25:31] == pytest.approx(cov[np.ix_([0, 1, 2, 6, 7, 8], [0, 1, 2, 6, 7, 8])])
+    assert cov[25:28, P] == pytest.approx(cov[P, P])
+    state.hold(2)
+    state.hold(2)
+    assert len(state.clones) == 2
+    assert state.covariance.shape == (37, 37)
+    state.forget(0)
+    assert state.covariance.shape == (31, 31)
+
+
+def test_a_new_place_is_split_with_the_receiver_s_error() -> None:
+    """After one fix the position is as unsure as the fix, and its error is the receiver's."""
+    state = _state()
+    state.place((10.0, 20.0, 5.0))
+    sigma = (2.0, 2.0, 4.0)
+    white = 1.0 - sum(SETTINGS.gps_error_share)
+    noise = np.diag([white * s * s for s in sigma])
+    state.correct(*observations.gps_position(state, (11.0, 20.0, 5.0), sigma, (0.0, 0.0, 0.0)), noise)
+    assert np.sqrt(np.diag(state.covariance)[P]) == pytest.approx(sigma, rel=1e-2)
+    assert state.nav.p_m == pytest.approx((11.0, 20.0, 5.0), abs=0.01)
+
+
+def test_a_rig_that_stands_learns_its_gyroscope_s_bias() -> None:
+    state = _state()
+    for step in range(1, 2001):
+        state.advance(step * 10_000_000, (0.004, -0.002, 0.003), (0.0, 0.0, G))
+        if step % 25 == 0:
+            state.correct(*observations.velocity(state, (0.0, 0.0, 0.0)), 1e-4 * np.eye(3))
+            state.correct(*observations.turn_rate(state, (0.004, -0.002, 0.003)), 1e-4 * np.eye(3))
+    assert state.biases.gyro_rad_s == pytest.approx((0.004, -0.002, 0.003), abs=2e-4)
+    sigma = np.sqrt(np.diag(state.covariance))
+    assert np.all(sigma[BG] < 0.002)
+    assert sigma[THETA][2] > 0.5  # nothing here tells north
+    assert np.all(sigma[BA] <= SETTINGS.accel_bias_m_s2 + 0.01)
+
+
+def test_yaw_turns_the_long_way_round() -> None:
+    state = _state()
+    state.nav = state.nav._replace(wxyz_site_body=wxyz_from_yaw(pi - 0.01))
+    error = np.zeros(25)
+    error[8] = 0.02
+    state.move(error)
+    assert multiply(conjugate(wxyz_from_yaw(-pi + 0.01)), state.nav.wxyz_site_body)[0] ** 2 == pytest.approx(1.0)

@@ -1,0 +1,116 @@
+"""Every Jacobian of a measurement against differences, at states and measurements drawn by chance."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from numpy.random import Generator
+
+from tracker.geometry import matrix_from_wxyz, normalise
+from tracker.measurements import Matrix, Vector3, Wxyz
+from tracker.precise import observations
+from tracker.precise.error_state import ErrorState, start_covariance
+from tracker.precise.navigation import Biases, Navigation
+from tracker.precise.observations import Observation
+from tracker.precise.settings import PreciseSettings
+
+SETTINGS = PreciseSettings()
+LEVER: Vector3 = (0.1, -0.2, 0.3)
+Sensor = Callable[[ErrorState], Observation | None]
+
+
+def _vector(rng: Generator, scale: float = 1.0) -> Vector3:
+    x, y, z = (scale * rng.normal(size=3)).tolist()
+    return (x, y, z)
+
+
+def _attitude(rng: Generator) -> Wxyz:
+    w, x, y, z = rng.normal(size=4).tolist()
+    return normalise((w, x, y, z))
+
+
+def _state(rng: Generator) -> ErrorState:
+    """A state with two held pictures, all of it anywhere."""
+    state = ErrorState(
+        SETTINGS,
+        Navigation(0, _vector(rng), _vector(rng), _attitude(rng)),
+        Biases(),
+        start_covariance(SETTINGS, (1.0, 1.0, 1.0), 1.0, 1.0),
+        9.8,
+    )
+    for _ in range(2):
+        state.hold(2)
+        state.move(0.5 * rng.normal(size=len(state.covariance)))
+    return state
+
+
+def _numeric(state: ErrorState, sensor: Sensor) -> Matrix:
+    columns = []
+    for index in range(len(state.covariance)):
+        error = np.zeros(len(state.covariance))
+        error[index] = 1e-6
+        ahead, behind = state.copied(), state.copied()
+        ahead.move(error)
+        behind.move(-error)
+        (a, _), (b, _) = _seen(sensor, ahead), _seen(sensor, behind)
+        columns.append((b - a) / 2e-6)
+    return np.stack(columns, axis=1)
+
+
+def _seen(sensor: Sensor, state: ErrorState) -> Observation:
+    seen = sensor(state)
+    assert seen is not None
+    return seen
+
+
+def _magnetometer(rng: Generator, state: ErrorState) -> Sensor:
+    x, y, z = (state.R_site_body.T @ np.array([0.05, 0.25, -0.4])).tolist()
+    return lambda s: observations.magnetic_yaw(s, (x, y, z), 0.1)
+
+
+def _landmark(rng: Generator, state: ErrorState) -> Sensor:
+    point = _vector(rng, 10.0)
+    to = np.array(point) - state.nav.p_m - state.R_site_body @ np.array(LEVER)
+    x, y, z = (state.R_site_body.T @ to / np.linalg.norm(to)).tolist()
+    return lambda s: observations.bearing(s, point, (x, y, z), LEVER)
+
+
+def _rotation(rng: Generator, state: ErrorState) -> Sensor:
+    R_body_cam = matrix_from_wxyz(_attitude(rng))
+    R_key_cam = (state.clones[0].R_site_body @ R_body_cam).T @ state.R_site_body @ R_body_cam
+    return lambda s: observations.rotation_to_clone(s, 0, R_key_cam, R_body_cam)
+
+
+def _direction(rng: Generator, state: ErrorState) -> Sensor:
+    R_body_cam = matrix_from_wxyz(_attitude(rng))
+    lever, held = np.array(LEVER), state.clones[1]
+    base = np.array(state.nav.p_m) + state.R_site_body @ lever - held.p_m - held.R_site_body @ lever
+    x, y, z = ((held.R_site_body @ R_body_cam).T @ base / np.linalg.norm(base)).tolist()
+    return lambda s: observations.direction_from_clone(s, 1, (x, y, z), R_body_cam, LEVER)
+
+
+SENSORS: dict[str, Callable[[Generator, ErrorState], Sensor]] = {
+    "fix": lambda rng, _: lambda s: observations.gps_position(s, (1.0, 2.0, 3.0), (2.0, 2.0, 4.0), LEVER),
+    "velocity": lambda rng, _: lambda s: observations.gps_velocity(s, (1.0, 2.0, 3.0), (0.1, 0.2, 0.3), LEVER),
+    "standing": lambda rng, _: lambda s: observations.velocity(s, (0.0, 0.0, 0.0)),
+    "still": lambda rng, _: lambda s: observations.turn_rate(s, (0.01, 0.02, 0.03)),
+    "height": lambda rng, _: lambda s: observations.height(s, 1.6),
+    "place": lambda rng, _: lambda s: observations.position(s, (1.0, 2.0, 3.0)),
+    "magnetometer": _magnetometer,
+    "landmark": _landmark,
+    "rotation": _rotation,
+    "direction": _direction,
+}
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("name", SENSORS)
+def test_jacobians(name: str, seed: int) -> None:
+    rng = np.random.default_rng([seed, len(name)])
+    state = _state(rng)
+    sensor = SENSORS[name](rng, state)
+    residual, blocks = _seen(sensor, state)
+    H = np.zeros((len(residual), len(state.covariance)))
+    for columns, block in blocks:
+        H[:, columns] += block
+    assert pytest.approx(_numeric(state, sensor), abs=1e-7) == H

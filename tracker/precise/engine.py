@@ -1,0 +1,270 @@
+"""The filter fed in the order of measuring: each measurement carries the state on to its stamp and corrects it there."""
+
+from math import hypot, pi, sqrt
+
+import numpy as np
+
+from tracker.estimator import Innovation
+from tracker.fixes import variance_m2
+from tracker.geodesy import SiteFrame
+from tracker.geometry import wrap_rad, wxyz_level_from_gravity, yaw_of
+from tracker.measurements import (
+    CompassHeading,
+    GpsFix,
+    GpsVelocity,
+    ImuSample,
+    MagSample,
+    Vector3,
+    VisualMotion,
+)
+from tracker.pace import Pace
+from tracker.precise import observations
+from tracker.precise.activity import Activity
+from tracker.precise.compass import Compass
+from tracker.precise.error_state import Correction, ErrorState, start_covariance
+from tracker.precise.hypotheses import Hypotheses
+from tracker.precise.navigation import Biases, Navigation
+from tracker.precise.settings import PreciseSettings
+from tracker.precise.timeline import Keyframe, Timed
+from tracker.rig import Rig
+
+_I3 = np.eye(3)
+#: The first specific force is averaged over this long.
+_START_S = 0.5
+#: Pictures held for those to come.
+_HELD = 2
+#: Heading is not looked for by motion while the walker stands: eight filters would learn nothing.
+_MOVING_M_S = 0.3
+
+
+class Engine:
+    """State of the world as of the last measurement taken."""
+
+    def __init__(
+        self, settings: PreciseSettings, site: SiteFrame, rig: Rig, compass: Compass, gravity_m_s2: float
+    ) -> None:
+        self._settings = settings
+        self._site = site
+        self._rig = rig
+        self._R_body_cam = rig.T_body_cam[:3, :3]
+        x, y, z = rig.T_body_cam[:3, 3].tolist()
+        self._lever_cam_m: Vector3 = (x, y, z)
+        x, y, z = rig.T_body_gps[:3, 3].tolist()
+        self._lever_gps_m: Vector3 = (x, y, z)
+        self._gravity = gravity_m_s2
+        self._compass = compass
+        self._activity = Activity()
+        self._pace = Pace()
+        self._start: list[ImuSample] = []
+        self._last: ImuSample | None = None
+        self.hypotheses: Hypotheses | None = None
+        """None until the first half second of inertial samples."""
+        self.fix_ns: int | None = None
+        """Of the last fix taken in."""
+        self._velocity_ns: int | None = None
+        self._refused = 0
+        self._suspicion = 0.0
+        self.heading_found = False
+        self.innovations: list[Innovation] = []
+
+    @property
+    def model(self) -> str:
+        """The motion model that the controller has chosen."""
+        return str(self._activity.model)
+
+    # -- time ---------------------------------------------------------------------------------------------------------
+
+    def take(self, measurement: Timed, following: ImuSample | None) -> None:
+        """Take the next measurement; `following` is the first inertial sample after it."""
+        if isinstance(measurement, ImuSample):
+            self._take_imu(measurement)
+            return
+        if self.hypotheses is None or self._last is None:
+            return
+        if following is not None and measurement.t_ns > self._last.t_ns:
+            self._take_imu(_between(self._last, following, measurement.t_ns), counted=False)
+        match measurement:
+            case GpsFix():
+                self._take_fix(measurement)
+            case GpsVelocity():
+                self._take_velocity(measurement)
+            case MagSample():
+                self._take_magnetometer(measurement)
+            case CompassHeading():
+                self._compass.heading(wrap_rad(measurement.yaw_rad - yaw_of(self.best.nav.wxyz_site_body)))
+            case VisualMotion():
+                self._take_vision(measurement)
+            case Keyframe():
+                for filter_ in self.hypotheses.filters:
+                    filter_.hold(_HELD)
+
+    def _take_imu(self, sample: ImuSample, *, counted: bool = True) -> None:
+        last = self._last
+        if last is None or self.hypotheses is None:
+            self._begin(sample)
+            return
+        self._last = sample
+        gyro, accel = _mean(last.gyro_rad_s, sample.gyro_rad_s), _mean(last.accel_m_s2, sample.accel_m_s2)
+        for filter_ in self.hypotheses.filters:
+            filter_.advance(sample.t_ns, gyro, accel)
+        if counted:
+            self._pace.step(accel, self.best.nav.wxyz_site_body, (sample.t_ns - last.t_ns) * 1e-9)
+            if self._activity.step(sample):
+                self._cycle(sample.t_ns)
+
+    def _begin(self, sample: ImuSample) -> None:
+        self._last = sample
+        self._start.append(sample)
+        self._activity.step(sample)
+        if sample.t_ns - self._start[0].t_ns < _START_S * 1e9:
+            return
+        x, y, z = (sum(s.accel_m_s2[axis] for s in self._start) / len(self._start) for axis in range(3))
+        self._start.clear()
+        if hypot(x, y, z) < 1.0:
+            return  # a rig in free fall has no up
+        settings, zero = self._settings, (0.0, 0.0, 0.0)
+        nav = Navigation(sample.t_ns, zero, zero, wxyz_level_from_gravity((x, y, z)))
+        cov = start_covariance(settings, (1e3, 1e3, 1e3), 1.0, pi / sqrt(3.0))
+        self.hypotheses = Hypotheses(ErrorState(settings, nav, Biases(), cov, self._gravity))
+
+    @property
+    def best(self) -> ErrorState:
+        """The most likely filter."""
+        assert self.hypotheses is not None
+        return self.hypotheses.best
+
+    # -- standing and walking -----------------------------------------------------------------------------------------
+
+    def _cycle(self, t_ns: int) -> None:
+        """Four times a second: what the activity says of velocity and bias."""
+        hypotheses, activity, settings = self.hypotheses, self._activity, self._settings
+        assert hypotheses is not None
+        if activity.stands:
+            sigma = settings.still_sigma_m_s + 0.1 * hypot(*activity.gyro_mean_rad_s)
+            hypotheses.correct(
+                lambda f: f.correct(
+                    *observations.velocity(f, (0.0, 0.0, 0.0)), sigma**2 * _I3, gated=not self._is_blind(t_ns)
+                )
+            )
+            if activity.is_still:
+                noise = settings.still_rate_sigma_rad_s**2 * _I3
+                hypotheses.correct(lambda f: f.correct(*observations.turn_rate(f, activity.gyro_mean_rad_s), noise))
+        elif self._is_blind(t_ns):
+            expected = self._pace.velocity_m_s((1.0, 0.0)) if self.fix_ns is not None else (0.0, 0.0, 0.0)
+            sigma = 0.6 if self.fix_ns is not None else 1.5
+            hypotheses.correct(lambda f: f.correct(*observations.velocity(f, expected), sigma**2 * _I3, gated=False))
+        else:
+            self._pace.learn(self.best.nav.v_m_s, (1.0, 0.0))
+        if self.fix_ns is None:
+            # nothing says where the rig is: it stays about here, and attitude is what is estimated
+            hypotheses.correct(lambda f: f.correct(*observations.position(f, (0.0, 0.0, 0.0)), 25.0 * _I3, gated=False))
+
+    def _is_blind(self, t_ns: int) -> bool:
+        """Whether the receiver has been silent for longer than its usual second."""
+        return self.fix_ns is None or t_ns - self.fix_ns > 2_500_000_000
+
+    # -- receiver -----------------------------------------------------------------------------------------------------
+
+    def _take_fix(self, fix: GpsFix) -> None:
+        hypotheses, settings = self.hypotheses, self._settings
+        assert hypotheses is not None
+        p = self._site.site_from_geodetic(fix.lat_deg, fix.lon_deg, fix.h_ellipsoid_m)
+        var = variance_m2(fix, settings.gps_floor_m, settings.gps_sigma_m)
+        ex, ey, ez = (sqrt(v * settings.gps_inflation) for v in var)
+        sigma = (ex, ey, ez)
+        if self.fix_ns is None:
+            for filter_ in hypotheses.filters:
+                filter_.place(p)
+            self._find_heading()
+        white = 1.0 - sum(settings.gps_error_share)
+        noise = np.diag([max(white, 0.02) * s * s for s in sigma])
+        done = hypotheses.correct(
+            lambda f: f.correct(*observations.gps_position(f, p, sigma, self._lever_gps_m), noise)
+        )
+        self.fix_ns = fix.t_ns
+        if done is None or done.used:
+            self._refused = 0
+            return
+        self._refused += 1
+        if self._refused >= settings.insist:
+            self._refused = 0
+            for filter_ in hypotheses.filters:
+                filter_.place(p)
+                filter_.correct(*observations.gps_position(filter_, p, sigma, self._lever_gps_m), noise)
+
+    def _take_velocity(self, measured: GpsVelocity) -> None:
+        hypotheses, last = self.hypotheses, self._last
+        assert hypotheses is not None
+        assert last is not None
+        sigma = self._settings.gps_velocity_sigma_m_s
+        noise = np.diag([sigma**2, sigma**2, (1.5 * sigma) ** 2])
+        done = hypotheses.correct(
+            lambda f: f.correct(
+                *observations.gps_velocity(f, measured.v_enu_m_s, last.gyro_rad_s, self._lever_gps_m), noise
+            )
+        )
+        self._velocity_ns = measured.t_ns
+        if done is not None and self.heading_found:
+            self._suspicion += 0.1 * (min(done.nis, 30.0) - self._suspicion)
+            if self._suspicion > 8.0:
+                self._find_heading()
+        if not hypotheses.are_many and float(self.best.covariance[8, 8]) < self._settings.converged_rad**2:
+            self.heading_found = True
+
+    # -- heading ------------------------------------------------------------------------------------------------------
+
+    def _find_heading(self) -> None:
+        assert self.hypotheses is not None
+        self.heading_found, self._suspicion = False, 0.0
+        self.hypotheses.spread(self._settings.hypotheses, self._compass.yaw_rad(self.best.nav.wxyz_site_body))
+
+    def _take_magnetometer(self, sample: MagSample) -> None:
+        self._compass.field(sample, self.best.nav.wxyz_site_body)
+        if not self.heading_found or not self._compass.is_trusted:
+            return
+        assert self.hypotheses is not None
+
+    # -- camera -------------------------------------------------------------------------------------------------------
+
+    def _take_vision(self, motion: VisualMotion) -> None:
+        assert self.hypotheses is not None
+        self.hypotheses.correct(lambda f: self._rotation(f, motion))
+        if any(motion.direction_key):
+            self.hypotheses.correct(lambda f: self._direction(f, motion))
+
+    def _rotation(self, filter_: ErrorState, motion: VisualMotion) -> Correction | None:
+        index = _index_of(filter_, motion.t_key_ns)
+        if index is None:
+            return None
+        noise = self._settings.vision_rotation_rad**2 * _I3
+        return filter_.correct(
+            *observations.rotation_to_clone(filter_, index, motion.R_key_cam, self._R_body_cam), noise
+        )
+
+    def _direction(self, filter_: ErrorState, motion: VisualMotion) -> Correction | None:
+        index = _index_of(filter_, motion.t_key_ns)
+        if index is None:
+            return None
+        seen = observations.direction_from_clone(
+            filter_, index, motion.direction_key, self._R_body_cam, self._lever_cam_m
+        )
+        if seen is None:
+            return None
+        sigma = max(self._settings.vision_direction_rad, self._settings.vision_point_px / max(motion.parallax_px, 0.1))
+        return filter_.correct(*seen, sigma**2 * np.eye(2))
+
+
+def _index_of(filter_: ErrorState, t_ns: int) -> int | None:
+    return next((i for i, clone in enumerate(filter_.clones) if clone.t_ns == t_ns), None)
+
+
+def _mean(a: Vector3, b: Vector3) -> Vector3:
+    return (0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2]))
+
+
+def _between(a: ImuSample, b: ImuSample, t_ns: int) -> ImuSample:
+    f = (t_ns - a.t_ns) / (b.t_ns - a.t_ns)
+    (ax, ay, az), (bx, by, bz) = a.gyro_rad_s, b.gyro_rad_s
+    (cx, cy, cz), (dx, dy, dz) = a.accel_m_s2, b.accel_m_s2
+    gyro = (ax + f * (bx - ax), ay + f * (by - ay), az + f * (bz - az))
+    return ImuSample(t_ns, t_ns, gyro, (cx + f * (dx - cx), cy + f * (dy - cy), cz + f * (dz - cz)))

@@ -1,0 +1,304 @@
+"""The error-state filter: a nominal state, and the covariance of what it may be off by.
+
+The error is (dp, dv, dtheta, dbg, dba, e, m, clones): position, velocity and rotation vector in site axes, biases in body axes,
+nine states of the receiver's error (unit variance; three correlation times for each axis), the magnetic deviation, and for every
+held picture its position and rotation. dtheta is on the left: R_true = Exp(dtheta) R.
+
+Reference:
+    Sola, Quaternion kinematics for the error-state Kalman filter, 2017, chapter 7 (global angular error).
+    Roumeliotis and Burdick, Stochastic cloning, 2002.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import log, pi
+
+import numpy as np
+
+from tracker.geometry import conjugate, matrix_from_wxyz, multiply, normalise
+from tracker.geometry import exp as rotation_exp
+from tracker.measurements import Matrix, Vector3
+from tracker.precise.navigation import Biases, Navigation, advance
+from tracker.precise.settings import PreciseSettings
+
+P, V, THETA, BG, BA = slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 12), slice(12, 15)
+#: The receiver's error: first the three axes of the shortest correlation time.
+GPS_ERROR = slice(15, 24)
+MAGNETIC = 24
+SIZE = 25
+_INERTIAL = slice(0, 15)
+#: Of a position that is not known. The first fix then splits it with the receiver's error as it should be.
+_UNKNOWN_M2 = 1e4
+#: Covariance is carried on in steps of about this long: attitude hardly turns within one.
+_CHUNK_S = 0.02
+
+
+@dataclass
+class Clone:
+    """A held picture's body pose."""
+
+    t_ns: int
+    p_m: Vector3
+    R_site_body: Matrix
+    wxyz_site_body: tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class Correction:
+    """What an update did."""
+
+    nis: float
+    """Squared innovation by its covariance, per dimension."""
+    log_likelihood: float
+    used: bool
+
+
+class ErrorState:
+    """One filter, at one time."""
+
+    def __init__(
+        self, settings: PreciseSettings, nav: Navigation, biases: Biases, covariance: Matrix, gravity_m_s2: float
+    ) -> None:
+        """`covariance` is (25, 25), without clones."""
+        self.settings = settings
+        self.nav = nav
+        self.biases = biases
+        self.covariance = covariance
+        self.gps_error = np.zeros(9)
+        self.magnetic_rad = 0.0
+        self.clones: list[Clone] = []
+        self._gravity = gravity_m_s2
+        self._noise = _InertialNoise(settings)
+        self.restart_chunk()
+
+    # -- prediction ---------------------------------------------------------------------------------------------------
+
+    def advance(self, t_ns: int, gyro_rad_s: Vector3, accel_m_s2: Vector3) -> None:
+        """Carry the nominal state on to t_ns; the covariance follows when a chunk is full, or an update needs it."""
+        before = self.nav
+        self.nav = advance(before, t_ns, gyro_rad_s, accel_m_s2, self.biases, self._gravity)
+        if t_ns - self._chunk_nav.t_ns >= _CHUNK_S * 1e9:
+            self.settle()
+
+    def restart_chunk(self) -> None:
+        """Begin a new step of the covariance at the present nominal state, after that was changed."""
+        self._chunk_nav = self.nav
+        self._chunk_R = matrix_from_wxyz(self.nav.wxyz_site_body)
+
+    def settle(self) -> None:
+        """Bring the covariance to the nominal state's time."""
+        start, end = self._chunk_nav, self.nav
+        dt = (end.t_ns - start.t_ns) * 1e-9
+        if dt <= 0.0:
+            return
+        R_end = matrix_from_wxyz(end.wxyz_site_body)
+        gained = np.array(end.v_m_s) - np.array(start.v_m_s)
+        gained[2] += self._gravity * dt
+        Phi = inertial_transition(dt, 0.5 * (self._chunk_R + R_end), gained)
+        cov = self.covariance
+        cov[_INERTIAL, _INERTIAL] = Phi @ cov[_INERTIAL, _INERTIAL] @ Phi.T
+        cov[_INERTIAL, 15:] = Phi @ cov[_INERTIAL, 15:]
+        cov[15:, _INERTIAL] = cov[_INERTIAL, 15:].T
+        keep = self._noise.kept(dt)
+        cov[15:SIZE, :] *= keep[:, None]
+        cov[:, 15:SIZE] *= keep
+        cov[_DIAGONAL] += self._noise.added(dt)
+        half = 0.5 * self._noise.velocity * dt * dt
+        cov[_P_V] += half
+        cov[_V_P] += half
+        self.gps_error = keep[:9] * self.gps_error
+        self.magnetic_rad *= float(keep[9])
+        self._chunk_nav, self._chunk_R = end, R_end
+
+    # -- update -------------------------------------------------------------------------------------------------------
+
+    def correct(
+        self,
+        residual: Matrix,
+        blocks: Sequence[tuple[slice, Matrix]],
+        noise: Matrix,
+        *,
+        gated: bool = True,
+    ) -> Correction:
+        """Take a measurement in, in Joseph's form.
+
+        Args:
+            residual: (m,) measured minus predicted.
+            blocks: Columns of H that are not zero, each (m, width of the slice).
+            noise: (m, m) covariance of the measurement.
+            gated: Whether what lies far out counts for less (Huber), and further out for nothing.
+        """
+        self.settle()
+        m, cov = len(residual), self.covariance
+        H = np.zeros((m, len(cov)))
+        for columns, block in blocks:
+            H[:, columns] += block
+        PHt = cov @ H.T
+        foreseen = H @ PHt
+        nis = float(residual @ np.linalg.solve(foreseen + noise, residual)) / m
+        if gated and nis > self.settings.gate_nis:
+            if nis > self.settings.reject_nis:
+                return Correction(nis, -0.5 * m * self.settings.reject_nis, used=False)
+            noise = noise * (nis / self.settings.gate_nis) + foreseen * (nis / self.settings.gate_nis - 1.0)
+        S = foreseen + noise
+        K = np.linalg.solve(S, PHt.T).T
+        reduced = cov - K @ PHt.T
+        reduced = reduced - (reduced @ H.T) @ K.T + K @ noise @ K.T
+        self.covariance = 0.5 * (reduced + reduced.T)
+        likelihood = -0.5 * (m * min(nis, self.settings.reject_nis) + log(float(np.linalg.det(S))) + m * log(2.0 * pi))
+        self.move(K @ residual)
+        return Correction(nis, likelihood, used=True)
+
+    def move(self, error: Matrix) -> None:
+        """Move the nominal state by an error."""
+        e = error.tolist()
+        (px, py, pz), (vx, vy, vz) = self.nav.p_m, self.nav.v_m_s
+        q = normalise(multiply(rotation_exp((e[6], e[7], e[8])), self.nav.wxyz_site_body))
+        self.nav = Navigation(self.nav.t_ns, (px + e[0], py + e[1], pz + e[2]), (vx + e[3], vy + e[4], vz + e[5]), q)
+        (gx, gy, gz), (ax, ay, az) = self.biases.gyro_rad_s, self.biases.accel_m_s2
+        self.biases = Biases((gx + e[9], gy + e[10], gz + e[11]), (ax + e[12], ay + e[13], az + e[14]))
+        self.gps_error = self.gps_error + error[GPS_ERROR]
+        self.magnetic_rad += e[24]
+        for index, clone in enumerate(self.clones):
+            d = e[SIZE + 6 * index : SIZE + 6 * index + 6]
+            clone_q = normalise(multiply(rotation_exp((d[3], d[4], d[5])), clone.wxyz_site_body))
+            p = (clone.p_m[0] + d[0], clone.p_m[1] + d[1], clone.p_m[2] + d[2])
+            self.clones[index] = Clone(clone.t_ns, p, matrix_from_wxyz(clone_q), clone_q)
+        self.restart_chunk()
+
+    # -- clones -------------------------------------------------------------------------------------------------------
+
+    def hold(self, most: int) -> None:
+        """Remember the present pose for pictures to come; the oldest beyond `most` is forgotten."""
+        self.settle()
+        while len(self.clones) >= most:
+            self.forget(0)
+        rows = [0, 1, 2, 6, 7, 8]
+        cov, n = self.covariance, len(self.covariance)
+        grown = np.empty((n + 6, n + 6))
+        grown[:n, :n] = cov
+        grown[n:, :n] = cov[rows, :]
+        grown[:n, n:] = cov[:, rows]
+        grown[n:, n:] = cov[np.ix_(rows, rows)]
+        self.covariance = grown
+        q = self.nav.wxyz_site_body
+        self.clones.append(Clone(self.nav.t_ns, self.nav.p_m, matrix_from_wxyz(q), q))
+
+    def forget(self, index: int) -> None:
+        """Drop a clone."""
+        at = SIZE + 6 * index
+        keep = np.r_[0:at, at + 6 : len(self.covariance)]
+        self.covariance = self.covariance[np.ix_(keep, keep)]
+        del self.clones[index]
+
+    # -- whole-state changes ------------------------------------------------------------------------------------------
+
+    def widen(self, columns: slice, variance: Matrix) -> None:
+        """Add to the variance of some states."""
+        self.settle()
+        index = np.arange(len(self.covariance))[columns]
+        self.covariance[index, index] += variance
+
+    def place(self, p_site_m: Vector3) -> None:
+        """Begin anew at a position of which nothing is known yet; what is known of velocity and attitude stays."""
+        self.settle()
+        cov = self.covariance
+        cov[P, :] = 0.0
+        cov[:, P] = 0.0
+        cov[P, P] = _UNKNOWN_M2 * np.eye(3)
+        cov[GPS_ERROR, :] = 0.0
+        cov[:, GPS_ERROR] = 0.0
+        cov[GPS_ERROR, GPS_ERROR] = np.diag(np.repeat(self.settings.gps_error_share, 3))
+        self.gps_error = np.zeros(9)
+        self.nav = self.nav._replace(p_m=p_site_m)
+        self.restart_chunk()
+
+    def copied(self) -> "ErrorState":
+        """Return a copy that shares nothing that changes."""
+        self.settle()
+        copy = ErrorState(self.settings, self.nav, self.biases, self.covariance.copy(), self._gravity)
+        copy.gps_error, copy.magnetic_rad, copy.clones = self.gps_error.copy(), self.magnetic_rad, list(self.clones)
+        return copy
+
+    @property
+    def R_site_body(self) -> Matrix:
+        """(3, 3)."""
+        return matrix_from_wxyz(self.nav.wxyz_site_body)
+
+    def turned_by(self, clone: Clone) -> tuple[float, float, float, float]:
+        """Return the rotation from the present body to a held one, wxyz_held_body."""
+        return multiply(conjugate(clone.wxyz_site_body), self.nav.wxyz_site_body)
+
+
+_DIAGONAL = (np.arange(SIZE), np.arange(SIZE))
+_P_V = (np.arange(3), np.arange(3, 6))
+_V_P = (np.arange(3, 6), np.arange(3))
+
+
+class _InertialNoise:
+    """What a step adds to the diagonal, and what it leaves of states that forget."""
+
+    def __init__(self, settings: PreciseSettings) -> None:
+        self.velocity = settings.accel_noise_m_s2_sqrt_hz**2
+        self._rates = np.zeros(SIZE)
+        self._rates[V] = self.velocity
+        self._rates[THETA] = settings.gyro_noise_rad_s_sqrt_hz**2
+        self._rates[BG] = settings.gyro_bias_walk_rad_s2_sqrt_hz**2
+        self._rates[BA] = settings.accel_bias_walk_m_s3_sqrt_hz**2
+        self._times_s = np.array([*np.repeat(settings.gps_error_s, 3), settings.magnetic_deviation_s])
+        shares = np.repeat(settings.gps_error_share, 3)
+        self._steady = np.array([*shares, settings.magnetic_deviation_rad**2])
+        self._dt_s = 0.0
+        self._kept = np.ones(10)
+
+    def kept(self, dt_s: float) -> Matrix:
+        """(10,) factors of the receiver's error and the magnetic deviation."""
+        if dt_s != self._dt_s:
+            self._dt_s, self._kept = dt_s, np.exp(-dt_s / self._times_s)
+        return self._kept
+
+    def added(self, dt_s: float) -> Matrix:
+        """(25,) variances."""
+        added = self._rates * dt_s
+        added[P] = self.velocity * dt_s**3 / 3.0
+        added[15:] = self._steady * (1.0 - self.kept(dt_s) ** 2)
+        return added
+
+
+def start_covariance(settings: PreciseSettings, position_m: Vector3, velocity_m_s: float, yaw_rad: float) -> Matrix:
+    """Return the (25, 25) covariance of a start: standard deviations of position, velocity and yaw as given."""
+    sigma = np.zeros(SIZE)
+    sigma[P], sigma[V] = position_m, velocity_m_s
+    sigma[THETA] = (settings.tilt_rad, settings.tilt_rad, yaw_rad)
+    sigma[BG], sigma[BA] = settings.gyro_bias_rad_s, settings.accel_bias_m_s2
+    sigma[GPS_ERROR] = np.sqrt(np.repeat(settings.gps_error_share, 3))
+    sigma[MAGNETIC] = settings.magnetic_deviation_rad
+    return np.diag(sigma**2)
+
+
+def inertial_transition(dt_s: float, R_site_body: Matrix, gained_m_s: Matrix) -> Matrix:
+    """Return Phi, (15, 15), of a step.
+
+    Args:
+        dt_s: Its length.
+        R_site_body: (3, 3), the mean attitude.
+        gained_m_s: (3,) integral of the specific force over the step, in site.
+    """
+    cross = skew(gained_m_s)
+    Phi = np.eye(15)
+    Phi[0, 3] = Phi[1, 4] = Phi[2, 5] = dt_s
+    Phi[P, THETA] = -0.5 * dt_s * cross
+    Phi[V, THETA] = -cross
+    turned = R_site_body * dt_s
+    Phi[THETA, BG] = -turned
+    Phi[V, BG] = 0.5 * cross @ turned
+    Phi[P, BG] = (dt_s / 6.0) * cross @ turned
+    Phi[V, BA] = -turned
+    Phi[P, BA] = -0.5 * dt_s * turned
+    return Phi
+
+
+def skew(v: Matrix | Vector3) -> Matrix:
+    """Return [v]x, (3, 3)."""
+    x, y, z = (float(value) for value in v)
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

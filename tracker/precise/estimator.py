@@ -1,0 +1,236 @@
+"""`precise`: measurements in, poses out. What a sensor says is applied when it was measured, however late it came."""
+
+from copy import deepcopy
+from math import hypot, isfinite
+
+import numpy as np
+
+from tracker.estimator import Innovation, Origin, Pose, Snapshot
+from tracker.fixes import FASTEST_M_S
+from tracker.geodesy import SiteFrame, gravity_m_s2
+from tracker.measurements import (
+    CompassHeading,
+    GpsFix,
+    GpsVelocity,
+    ImuSample,
+    MagSample,
+    Matrix,
+    Measurement,
+    Outcome,
+    VisualMotion,
+)
+from tracker.precise.compass import Compass
+from tracker.precise.engine import Engine
+from tracker.precise.error_state import ErrorState
+from tracker.precise.navigation import Biases, Navigation, advance, carried
+from tracker.precise.settings import PreciseSettings
+from tracker.precise.timeline import Keyframe, Timeline
+from tracker.rig import Rig
+
+_KINDS = (ImuSample, MagSample, CompassHeading, GpsFix, GpsVelocity, VisualMotion)
+#: A stamp that is ahead of its arrival by more than this is a clock that leapt.
+_FASTEST_CLOCK_NS = 2_000_000_000
+#: A prediction goes on with the last rates at most this long, and turns on for the first part of it.
+_LONGEST_PREDICTION_S, _LONGEST_TURN_S = 1.0, 0.1
+#: States of the free integral are kept for predictions of the recent past.
+_KEPT_S = 2.0
+
+
+class PreciseEstimator:
+    """An error-state filter half a second behind, and the strapdown integral from there to now."""
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        origin: Origin,
+        rig: Rig,
+        compass: Compass,
+        uses_camera: bool,
+        settings: PreciseSettings | None = None,
+    ) -> None:
+        self._name, self._uses_camera = name, uses_camera
+        self._settings = settings or PreciseSettings()
+        self._gravity = gravity_m_s2(origin.lat_deg, origin.h_ellipsoid_m)
+        self._timeline = Timeline()
+        self._engine = Engine(self._settings, SiteFrame(origin), rig, compass, self._gravity)
+        self._free: list[tuple[Navigation, ImuSample]] = []
+        """The strapdown integral that no measurement corrects, and the sample that ended each step."""
+
+    @property
+    def name(self) -> str:
+        """For instance `camera-gps-imu/precise`."""
+        return self._name
+
+    @property
+    def uses_camera(self) -> bool:
+        """Whether it wants `VisualMotion`."""
+        return self._uses_camera
+
+    # -- in -----------------------------------------------------------------------------------------------------------
+
+    def step(self, measurement: Measurement) -> Outcome:
+        """Take one measurement in order of arrival."""
+        if not isinstance(measurement, _KINDS) or (isinstance(measurement, VisualMotion) and not self._uses_camera):
+            return Outcome.IGNORED
+        refused = _refusal(measurement)
+        if refused is not None:
+            return refused
+        if not self._timeline.add(measurement):
+            return Outcome.REJECTED_STALE
+        if isinstance(measurement, VisualMotion):
+            self._timeline.add(Keyframe(measurement.t_key_ns))
+            if measurement.is_keyframe:
+                self._timeline.add(Keyframe(measurement.t_ns))
+        if isinstance(measurement, ImuSample):
+            self._integrate(measurement)
+            self._catch_up()
+        return Outcome.USED if self._engine.hypotheses is not None else Outcome.WAITING
+
+    def _catch_up(self) -> None:
+        newest_ns, timeline, engine = self._timeline.newest_ns, self._timeline, self._engine
+        if newest_ns is None:
+            return
+        for measurement in timeline.take(newest_ns - round(self._settings.lag_s * 1e9)):
+            engine.take(measurement, timeline.imu[0] if timeline.imu else None)
+
+    def _integrate(self, sample: ImuSample) -> None:
+        """Carry the free integral on; a sample that came late has it done again from there."""
+        free = self._free
+        late = [sample]
+        while free and free[-1][0].t_ns >= sample.t_ns:
+            late.append(free.pop()[1])
+        for one in sorted(late, key=lambda s: s.t_ns):
+            free.append((self._next(one), one))
+        while free[-1][0].t_ns - free[0][0].t_ns > _KEPT_S * 1e9:
+            del free[: len(free) // 4]
+
+    def _next(self, sample: ImuSample) -> Navigation:
+        if not self._free:
+            zero = (0.0, 0.0, 0.0)
+            return Navigation(sample.t_ns, zero, zero, (1.0, 0.0, 0.0, 0.0))
+        nav, last = self._free[-1]
+        (ax, ay, az), (bx, by, bz) = last.gyro_rad_s, sample.gyro_rad_s
+        (cx, cy, cz), (dx, dy, dz) = last.accel_m_s2, sample.accel_m_s2
+        gyro = (0.5 * (ax + bx), 0.5 * (ay + by), 0.5 * (az + bz))
+        accel = (0.5 * (cx + dx), 0.5 * (cy + dy), 0.5 * (cz + dz))
+        return advance(nav, sample.t_ns, gyro, accel, self._biases, self._gravity)
+
+    @property
+    def _biases(self) -> Biases:
+        return self._engine.best.biases if self._engine.hypotheses is not None else Biases()
+
+    # -- out ----------------------------------------------------------------------------------------------------------
+
+    def predict(self, t_ns: int) -> Pose | None:
+        """Return the pose at t_ns."""
+        engine = self._engine
+        if engine.hypotheses is None:
+            return None
+        best = engine.best
+        start, end = self._free_at(best.nav.t_ns), self._free_at(t_ns)
+        if start is None or end is None:
+            return None
+        nav = carried(best.nav, start, end, self._gravity)
+        cov = self._covariance(best, (t_ns - best.nav.t_ns) * 1e-9)
+        if not all(map(isfinite, (*nav.p_m, *nav.wxyz_site_body))) or not np.all(np.isfinite(cov)):
+            return None
+        known = float(cov[5, 5]) < self._settings.heading_known_rad**2
+        return Pose(t_ns, nav.p_m, nav.wxyz_site_body, nav.v_m_s, cov, engine.model, known)
+
+    def _free_at(self, t_ns: int) -> Navigation | None:
+        """Return the free integral at a time: between two samples, or carried on after the newest."""
+        free = self._free
+        if not free:
+            return None
+        nav, sample = free[-1]
+        if t_ns >= nav.t_ns:
+            return self._beyond(nav, sample, t_ns)
+        low, high = 0, len(free) - 1
+        while low < high:
+            middle = (low + high) // 2
+            if free[middle][0].t_ns < t_ns:
+                low = middle + 1
+            else:
+                high = middle
+        if free[low][0].t_ns == t_ns or low == 0:
+            return free[low][0]
+        before, after = free[low - 1], free[low]
+        (ax, ay, az), (bx, by, bz) = before[1].gyro_rad_s, after[1].gyro_rad_s
+        (cx, cy, cz), (dx, dy, dz) = before[1].accel_m_s2, after[1].accel_m_s2
+        gyro = (0.5 * (ax + bx), 0.5 * (ay + by), 0.5 * (az + bz))
+        accel = (0.5 * (cx + dx), 0.5 * (cy + dy), 0.5 * (cz + dz))
+        return advance(before[0], t_ns, gyro, accel, self._biases, self._gravity)
+
+    def _beyond(self, nav: Navigation, sample: ImuSample, t_ns: int) -> Navigation:
+        """Go on with the newest rates for a moment, then straight on, then not at all."""
+        ahead_s = min((t_ns - nav.t_ns) * 1e-9, _LONGEST_PREDICTION_S)
+        if ahead_s <= 0.0:
+            return nav
+        turning_s = min(ahead_s, _LONGEST_TURN_S)
+        turned_ns = nav.t_ns + round(turning_s * 1e9)
+        on = advance(nav, turned_ns, sample.gyro_rad_s, sample.accel_m_s2, self._biases, self._gravity)
+        if ahead_s <= turning_s:
+            return on._replace(t_ns=t_ns)
+        # without a force that is known, the velocity is held: seen from a frame that falls freely, it does not change
+        rest_s = ahead_s - turning_s
+        (px, py, pz), (vx, vy, vz) = on.p_m, on.v_m_s
+        return Navigation(t_ns, (px + vx * rest_s, py + vy * rest_s, pz + vz * rest_s), on.v_m_s, on.wxyz_site_body)
+
+    def _covariance(self, best: ErrorState, ahead_s: float) -> Matrix:
+        """Position and rotation of the filter's own time, carried on by what velocity is unsure of."""
+        rows = np.array([0, 1, 2, 6, 7, 8])
+        full = best.covariance
+        cov: Matrix = full[np.ix_(rows, rows)].copy()
+        if ahead_s > 0.0:
+            velocity = full[3:6, 3:6]
+            cross = full[0:3, 3:6]
+            cov[:3, :3] += ahead_s * (cross + cross.T) + ahead_s**2 * velocity
+        assert self._engine.hypotheses is not None
+        cov[5, 5] += max(0.0, self._engine.hypotheses.yaw_variance_rad2 - float(full[8, 8]))
+        return cov
+
+    def innovations(self) -> list[Innovation]:
+        """Return the updates since the last call and forget them."""
+        found, self._engine.innovations = self._engine.innovations, []
+        return found
+
+    # -- state --------------------------------------------------------------------------------------------------------
+
+    def snapshot(self) -> Snapshot:
+        """Return the whole state."""
+        return deepcopy((self._timeline, self._engine, self._free))
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Become what the snapshot was taken of."""
+        self._timeline, self._engine, self._free = deepcopy(snapshot)
+
+
+def _refusal(measurement: Measurement) -> Outcome | None:
+    """Return why a measurement cannot be used, whatever the state is."""
+    if measurement.t_ns > measurement.t_recv_ns + _FASTEST_CLOCK_NS:
+        return Outcome.REJECTED_GATE
+    match measurement:
+        case ImuSample():
+            if not all(map(isfinite, (*measurement.gyro_rad_s, *measurement.accel_m_s2))):
+                return Outcome.REJECTED_NOT_FINITE
+            if hypot(*measurement.gyro_rad_s) > 50.0 or hypot(*measurement.accel_m_s2) > 400.0:
+                return Outcome.REJECTED_GATE
+        case GpsFix():
+            if not measurement.valid:
+                return Outcome.REJECTED_WEAK
+            numbers = (measurement.lat_deg, measurement.lon_deg, measurement.h_ellipsoid_m)
+            if not all(map(isfinite, numbers)) or abs(measurement.lat_deg) > 90.0:
+                return Outcome.REJECTED_NOT_FINITE
+        case GpsVelocity():
+            if not all(map(isfinite, measurement.v_enu_m_s)):
+                return Outcome.REJECTED_NOT_FINITE
+            if hypot(*measurement.v_enu_m_s) > FASTEST_M_S:
+                return Outcome.REJECTED_GATE
+        case MagSample():
+            if not all(map(isfinite, measurement.field_body_t)):
+                return Outcome.REJECTED_NOT_FINITE
+        case CompassHeading():
+            if not isfinite(measurement.yaw_rad):
+                return Outcome.REJECTED_NOT_FINITE
+    return None

@@ -1,0 +1,73 @@
+"""The strapdown integral: attitude, velocity and position carried on by one inertial sample after another, in plain floats."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from tracker.geometry import conjugate, exp, multiply, normalise, rotate
+from tracker.measurements import Vector3, Wxyz
+
+
+class Navigation(NamedTuple):
+    """Where the body is, site axes."""
+
+    t_ns: int
+    p_m: Vector3
+    v_m_s: Vector3
+    wxyz_site_body: Wxyz
+
+
+@dataclass(frozen=True, slots=True)
+class Biases:
+    """What the inertial sensors say too much, body axes."""
+
+    gyro_rad_s: Vector3 = (0.0, 0.0, 0.0)
+    accel_m_s2: Vector3 = (0.0, 0.0, 0.0)
+
+
+def advance(
+    nav: Navigation, t_ns: int, gyro_rad_s: Vector3, accel_m_s2: Vector3, biases: Biases, gravity_m_s2: float
+) -> Navigation:
+    """Return the state at t_ns, the rates being what they are from nav.t_ns on.
+
+    Specific force is turned by the attitude in the middle of the step, which is exact to the second order.
+    """
+    dt = (t_ns - nav.t_ns) * 1e-9
+    (gx, gy, gz), (bx, by, bz) = gyro_rad_s, biases.gyro_rad_s
+    wx, wy, wz = (gx - bx) * dt, (gy - by) * dt, (gz - bz) * dt
+    middle = multiply(nav.wxyz_site_body, exp((0.5 * wx, 0.5 * wy, 0.5 * wz)))
+    (ax, ay, az), (cx, cy, cz) = accel_m_s2, biases.accel_m_s2
+    fx, fy, fz = rotate(middle, (ax - cx, ay - cy, az - cz))
+    fz -= gravity_m_s2
+    (px, py, pz), (vx, vy, vz), half = nav.p_m, nav.v_m_s, 0.5 * dt * dt
+    return Navigation(
+        t_ns,
+        (px + vx * dt + fx * half, py + vy * dt + fy * half, pz + vz * dt + fz * half),
+        (vx + fx * dt, vy + fy * dt, vz + fz * dt),
+        normalise(multiply(nav.wxyz_site_body, exp((wx, wy, wz)))),
+    )
+
+
+def carried(start: Navigation, free_start: Navigation, free_end: Navigation, gravity_m_s2: float) -> Navigation:
+    """Return `start`, carried on by the motion between two states of an integral that runs free.
+
+    The motion is taken in the body's axes at its start, gravity removed (preintegration), so that it does not matter where the
+    free integral has drifted to.
+
+    Reference:
+        Forster et al., On-manifold preintegration for real-time visual-inertial odometry, 2017, eq. 33.
+    """
+    dt = (free_end.t_ns - free_start.t_ns) * 1e-9
+    back = conjugate(free_start.wxyz_site_body)
+    turn = multiply(start.wxyz_site_body, back)
+    (ax, ay, az), (bx, by, bz) = free_start.v_m_s, free_end.v_m_s
+    (px, py, pz), (qx, qy, qz) = free_start.p_m, free_end.p_m
+    fall = gravity_m_s2 * dt
+    dvx, dvy, dvz = rotate(turn, (bx - ax, by - ay, bz - az + fall))
+    dpx, dpy, dpz = rotate(turn, (qx - px - ax * dt, qy - py - ay * dt, qz - pz - az * dt + 0.5 * fall * dt))
+    (sx, sy, sz), (ux, uy, uz) = start.p_m, start.v_m_s
+    return Navigation(
+        free_end.t_ns,
+        (sx + ux * dt + dpx, sy + uy * dt + dpy, sz + uz * dt + dpz - 0.5 * fall * dt),
+        (ux + dvx, uy + dvy, uz + dvz - fall),
+        normalise(multiply(turn, free_end.wxyz_site_body)),
+    )

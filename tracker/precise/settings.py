@@ -1,0 +1,66 @@
+"""Noise and habits that the precise filter believes in."""
+
+from dataclasses import dataclass
+from math import pi
+
+from tracker.measurements import Vector3
+
+
+@dataclass(frozen=True)
+class PreciseSettings:
+    """What the filter takes for granted of sensors, receivers and walkers."""
+
+    lag_s: float = 0.5
+    """The filter runs this far behind the newest sample, so that what arrives late still comes in its turn."""
+    gyro_noise_rad_s_sqrt_hz: float = 2.5e-4
+    """White noise density; a few times the sensor's own, for scale and misalignment errors."""
+    accel_noise_m_s2_sqrt_hz: float = 8e-3
+    """White noise density of the accelerometer."""
+    gyro_bias_walk_rad_s2_sqrt_hz: float = 5e-5
+    """How fast the bias wanders."""
+    accel_bias_walk_m_s3_sqrt_hz: float = 5e-4
+    """How fast the bias wanders."""
+    gyro_bias_rad_s: float = 0.006
+    """Standard deviation before anything was measured."""
+    accel_bias_m_s2: float = 0.06
+    """Standard deviation before anything was measured."""
+    tilt_rad: float = 0.05
+    """Of the first specific force, from a rig that may be moving."""
+    gps_error_s: tuple[float, float, float] = (15.0, 90.0, 600.0)
+    """Correlation times of a receiver's error. It is not known in advance which is true: three share the variance."""
+    gps_error_share: tuple[float, float, float] = (0.28, 0.33, 0.33)
+    """Shares of the stated variance; what is left over is white."""
+    gps_inflation: float = 1.5
+    """By how much stated variances are taken larger: receivers flatter themselves."""
+    gps_sigma_m: Vector3 = (2.12, 2.12, 4.0)
+    """For a receiver that states none."""
+    gps_floor_m: float = 0.3
+    """A receiver that states less is not believed."""
+    gps_velocity_sigma_m_s: float = 0.12
+    """White noise of a horizontal velocity; half as much again of the vertical one."""
+    gate_nis: float = 9.0
+    """Per dimension: what lies further out counts for less and less,"""
+    reject_nis: float = 40.0
+    """and beyond this for nothing."""
+    insist: int = 5
+    """So many refused fixes in a row are believed."""
+    still_sigma_m_s: float = 0.03
+    """A head that stands sways by this much."""
+    still_rate_sigma_rad_s: float = 0.012
+    """... and turns by this much."""
+    magnetic_deviation_rad: float = 0.25
+    """Iron near the rig and in it turns the compass by this much,"""
+    magnetic_deviation_s: float = 60.0
+    """and for so long."""
+    vision_rotation_rad: float = 0.006
+    """Of a picture against a held one. Those of one held picture share its error: each counts for less than it is worth."""
+    vision_direction_rad: float = 0.06
+    """Of a direction of travel, at best;"""
+    vision_point_px: float = 1.5
+    """and this, by the parallax in pixels, where that is worse."""
+    hypotheses: int = 8
+    """So many headings are tried where motion must tell north."""
+    converged_rad: float = 5.0 * pi / 180.0
+    """Heading is called known when its standard deviation is below this."""
+    heading_known_rad: float = 0.3
+    """The page is told that north is known when it is known this well."""
