@@ -17,7 +17,7 @@ from tracker.fuzzy import (
 )
 
 #: Transitions of one coefficient: state and symbol (small, large) to state.
-RING = {("0", "s"): "0", ("1", "s"): "1", ("2", "s"): "2", ("0", "l"): "1", ("1", "l"): "2", ("2", "l"): "0"}
+TABLE = {("0", "s"): "0", ("1", "s"): "1", ("2", "s"): "2", ("0", "l"): "1", ("1", "l"): "2", ("2", "l"): "1"}
 words = st.lists(st.tuples(st.sampled_from("sl"), st.sampled_from("sl")), max_size=12)
 
 
@@ -27,7 +27,7 @@ def test_a_word_leads_where_the_table_says(word: list[tuple[str, str]], start: M
     magnitude_p, magnitude_r = {"s": 2.0, "l": 2.1}, {"s": 0.3, "l": 0.31}
     i, j, model = str(start.i), str(start.j), start
     for p, r in word:
-        i, j = RING[i, p], RING[j, r]
+        i, j = TABLE[i, p], TABLE[j, r]
         model = automaton.next_model(magnitude_p[p], magnitude_r[r], model)
     assert model == MODEL_BY_NAME[f"P{i}R{j}"]
 
@@ -43,6 +43,13 @@ def test_it_keeps_a_model_when_the_fuzzy_controller_does_for_low(y_p: float, y_r
         assert (following.j == model.j) == (level_r == "Low")
 
 
+@given(st.floats(0.0, 2.2), st.floats(0.0, 0.27), st.sampled_from(MOTION_MODELS))
+def test_only_high_tells_it_from_the_fuzzy_controller(y_p: float, y_r: float, model: MotionModel) -> None:
+    """Below the second crossings both choose alike."""
+    if abs(y_r - 0.1) > 1e-15:
+        assert Automaton().next_model(y_p, y_r, model) == FuzzyController().next_model(y_p, y_r, model)
+
+
 def test_thresholds_are_the_first_crossings() -> None:
     automaton = Automaton()
     assert automaton.position == POSITION_MEMBERSHIP_M.crossovers()[0]
@@ -50,7 +57,7 @@ def test_thresholds_are_the_first_crossings() -> None:
 
 
 def test_what_is_no_number_is_large() -> None:
-    assert Automaton().next_model(nan, nan, MotionModel(0, 2)) == MotionModel(1, 0)
+    assert Automaton().next_model(nan, nan, MotionModel(0, 2)) == MotionModel(1, 1)
     assert Automaton().next_model(nextafter(1.0, 2.0), 0.1, MotionModel(0, 2)) == MotionModel(1, 2)
 
 
