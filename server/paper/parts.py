@@ -229,7 +229,21 @@ FUZZY = (
     ),
 )
 
+_DOCUMENT = "tests/server/paper/test_document.py::"
+
 RESULTS = (
+    Part(
+        "Tables: filter errors of GPS and IMU, and of camera, GPS and IMU, with arrows",
+        "server/paper/document/errors.py:errors",
+        "the paper's two tables of filter errors",
+        f"{_DOCUMENT}test_the_papers_numbers_stand_beneath_ours",
+    ),
+    Part(
+        "The printed numbers of both tables",
+        "server/paper/document/printed.py:FILTER_ERRORS",
+        "GPS, camera and IMU filter errors",
+        f"{_DOCUMENT}test_the_printed_tables",
+    ),
     Part(
         "The five datasets, in their printed sizes",
         "tracker/choreography.py:DATASET_UPDATES",
@@ -247,6 +261,12 @@ RESULTS = (
         "server/plots/controller.py:output_figure",
         "Output membership function",
         "tests/server/plots/test_controller.py::test_nine_singletons",
+    ),
+    Part(
+        "Table: rule base, drawn whole",
+        "server/plots/controller.py:rule_figure",
+        "all 81 rules",
+        "tests/server/plots/test_controller.py::test_every_rule_has_its_cell",
     ),
     Part(
         "Figures: real and estimated paths",
