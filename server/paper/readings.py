@@ -37,7 +37,7 @@ def readings(path: Path = OUT, jobs: int = 1, folder: Path = FOLDER) -> None:
     """Run every reading, or read what is kept of it, and write the rows."""
     task = Task(f"readings-dataset-{DATASET}-seed-{SEED}", reading_rows, (DATASET, SEED))
     with progress_bar("readings") as bar, worlds_closed():
-        rows = run_tasks([task], key=sources_key(), jobs=jobs, folder=folder, done=bar)[0]
+        rows = run_tasks([task], key=sources_key("readings"), jobs=jobs, folder=folder, done=bar)[0]
     write_figures(path, {"dataset": DATASET, "seed": SEED, "rows": rows})
 
 

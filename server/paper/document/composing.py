@@ -11,6 +11,7 @@ from server.paper.document.method import method
 from server.paper.document.opening import opening
 from server.paper.document.results import Results
 from server.paper.document.rules import rules
+from server.paper.document.sensitivity import sensitivity
 from server.paper.document.walks import walks
 from server.plots.plan import Plan
 from server.plots.trace import Trace
@@ -37,6 +38,7 @@ def compose(results: Results, examples: Mapping[int, Sequence[Trace]], plan: Pla
         calibration(results),
         errors(results),
         against_truth(results),
+        sensitivity(results),
         walks(results, examples, plan),
         discussion(results),
         again(),

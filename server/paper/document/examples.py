@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from server.paper.cases import DATASETS, ROOT, SITE, Case, runs_of, see, worlds_closed
+from server.paper.cases import DATASETS, ROOT, Case, runs_of, see, sources_key, worlds_closed
 from server.paper.tasks import content_key
 from server.plots.trace import Trace, trace_of
 from server.tables import PAPER_FOUR
@@ -40,13 +40,4 @@ def _of(case: Case, kept: Path) -> list[Trace]:
 
 def _key() -> str:
     """Return a name for all that a trace depends on."""
-    files = [
-        *(ROOT / "tracker").rglob("*.py"),
-        *(ROOT / "assets").rglob("*.py"),
-        *SITE.glob("*.toml"),
-        *(ROOT / "server").glob("*motions.py"),
-        *(ROOT / "server").glob("feature_*.py"),
-        ROOT / "server" / "paper" / "cases.py",
-        ROOT / "server" / "plots" / "trace.py",
-    ]
-    return content_key(files)
+    return f"{sources_key()}-{content_key([ROOT / 'server' / 'plots' / 'trace.py'])}"
