@@ -9,7 +9,7 @@ import cv2
 from server.paper.cases import ROOT, worlds_closed
 
 DOCS = ROOT / "docs" / "paper"
-STEPS = ("study", "sweep", "attitude", "document")
+STEPS = ("study", "sweep", "attitude", "readings", "document")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -50,12 +50,23 @@ def _step(name: str, seeds: int | None, jobs: int) -> Callable[[], None]:
 
         attitude()
 
+    def readings() -> None:
+        from server.paper.readings import readings
+
+        readings(DOCS / "readings.json")
+
     def document() -> None:
         from server.paper.document import write_document
 
         write_document()
 
-    steps: dict[str, Callable[[], None]] = {"study": study, "sweep": sweep, "attitude": attitude, "document": document}
+    steps: dict[str, Callable[[], None]] = {
+        "study": study,
+        "sweep": sweep,
+        "attitude": attitude,
+        "readings": readings,
+        "document": document,
+    }
     return steps[name]
 
 
