@@ -110,6 +110,11 @@ def numbers(blocks: Sequence[Block]) -> dict[str, str]:
     return found
 
 
+def anchor(name: str, number: str) -> str:
+    """Return where a link to a figure or table leads: `figure-path`, which no heading is called."""
+    return f"{number.partition(' ')[0].lower()}-{name}"
+
+
 def referring(text: str, names: Mapping[str, str], link: Callable[[str, str], str]) -> str:
     """Return a text with each [[name]] replaced by a link to what it names.
 

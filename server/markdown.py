@@ -4,7 +4,7 @@ import textwrap
 from collections.abc import Mapping
 from pathlib import Path
 
-from server.blocks import Block, Code, Document, Grid, Heading, Items, Shown, Text, numbers, referring
+from server.blocks import Block, Code, Document, Grid, Heading, Items, Shown, Text, anchor, numbers, referring
 
 _WIDTH = 140
 
@@ -50,7 +50,8 @@ def _block(block: Block, names: Mapping[str, str], folder: str) -> str:
         case Shown(picture):
             caption = _wrapped(f"**{names[picture.name]}.** {_told(picture.caption, names)}")
             alt = picture.alt.replace("[", "(").replace("]", ")")
-            return f'<a id="{picture.name}"></a>\n![{alt}]({folder}/{picture.name}.{picture.kind})\n\n{caption}'
+            place = anchor(picture.name, names[picture.name])
+            return f'<a id="{place}"></a>\n![{alt}]({folder}/{picture.name}.{picture.kind})\n\n{caption}'
 
 
 def _grid(grid: Grid, names: Mapping[str, str]) -> str:
@@ -58,7 +59,7 @@ def _grid(grid: Grid, names: Mapping[str, str]) -> str:
     rows = [grid.head, tuple(rule), *grid.rows]
     table = "\n".join("| " + " | ".join(_cell(_told(cell, names)) for cell in row) + " |" for row in rows)
     caption = _wrapped(f"**{names[grid.name]}.** {_told(grid.caption, names)}")
-    return f'<a id="{grid.name}"></a>{caption}\n\n{table}'
+    return f'<a id="{anchor(grid.name, names[grid.name])}"></a>\n{caption}\n\n{table}'
 
 
 def _cell(text: str) -> str:
@@ -66,7 +67,7 @@ def _cell(text: str) -> str:
 
 
 def _told(text: str, names: Mapping[str, str]) -> str:
-    return referring(text, names, lambda name, number: f"[{number}](#{name})")
+    return referring(text, names, lambda name, number: f"[{number}](#{anchor(name, number)})")
 
 
 def _wrapped(text: str, first: str = "", others: str = "") -> str:

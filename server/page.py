@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from html import escape
 from itertools import groupby
 
-from server.blocks import Block, Code, Document, Grid, Heading, Items, Shown, Text, numbers, referring
+from server.blocks import Block, Code, Document, Grid, Heading, Items, Shown, Text, anchor, numbers, referring
 from server.plots.style import Picture
 
 _MIME = {"svg": "image/svg+xml", "png": "image/png"}
@@ -96,7 +96,7 @@ def _picture(picture: Picture, names: Mapping[str, str]) -> str:
     data = b64encode(picture.data).decode("ascii")
     caption = f"<b>{names[picture.name]}.</b> {_inline(picture.caption, names)}"
     return (
-        f'<figure class="picture" id="{picture.name}"><img alt="{escape(picture.alt)}" '
+        f'<figure class="picture" id="{anchor(picture.name, names[picture.name])}"><img alt="{escape(picture.alt)}" '
         f'src="data:{_MIME[picture.kind]};base64,{data}"><figcaption>{caption}</figcaption></figure>'
     )
 
@@ -113,7 +113,8 @@ def _grid(grid: Grid, names: Mapping[str, str]) -> str:
     body = "\n".join(row(cells, "td") for cells in grid.rows)
     caption = f"<b>{names[grid.name]}.</b> {_inline(grid.caption, names)}"
     return (
-        f'<figure class="table" id="{grid.name}"><figcaption>{caption}</figcaption><div class="scroll"><table>\n'
+        f'<figure class="table" id="{anchor(grid.name, names[grid.name])}"><figcaption>{caption}</figcaption>'
+        f'<div class="scroll"><table>\n'
         f"<thead>{row(grid.head, 'th')}</thead>\n<tbody>\n{body}\n</tbody></table></div></figure>"
     )
 
@@ -141,14 +142,17 @@ def _list_of_figures(document: Document, names: Mapping[str, str]) -> str:
         return ""
     parts = ['<h2 id="figures-and-tables">Figures and tables</h2>']
     for _, group in groupby(named, key=lambda entry: names[entry[0]].partition(" ")[0]):
-        entries = (f'<li><a href="#{name}">{names[name]}</a>: {_inline(title, names)}</li>' for name, title in group)
+        entries = (
+            f'<li><a href="#{anchor(name, names[name])}">{names[name]}</a>: {_inline(title, names)}</li>'
+            for name, title in group
+        )
         parts.append("<ul>" + "".join(entries) + "</ul>")
     return "\n".join(parts)
 
 
 def _inline(text: str, names: Mapping[str, str]) -> str:
     """Return a text's Markdown as HTML: code first, so that nothing inside it is taken for more."""
-    linked = referring(text, names, lambda name, number: f"[{number}](#{name})")
+    linked = referring(text, names, lambda name, number: f"[{number}](#{anchor(name, number)})")
     pieces = re.split(r"(`[^`]+`)", linked)
     return "".join(
         f"<code>{escape(piece[1:-1])}</code>" if piece.startswith("`") and len(piece) > 2 else _marked(piece)

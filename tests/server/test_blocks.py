@@ -18,7 +18,7 @@ DOCUMENT = Document(
     (
         Heading("What we did, at first"),
         Text("See [[sizes]] and `a | b < c`; 2 * 3 * 4 stays, [a link](other.md) leads on."),
-        Heading("Then"),
+        Heading("Path"),
         Items(("One `x*y*z`.", "Two, as in [[path]].")),
         Grid("sizes", "Sizes of all. In metres.", ("name", "m"), (("a|b", "1.0"), ("c", "2.0"))),
         Shown(PICTURE),
@@ -62,7 +62,7 @@ def test_figures_and_tables_are_counted_apart() -> None:
 
 def test_markdown() -> None:
     text = markdown(DOCUMENT, "paper")
-    assert text.startswith("# On <walks> & errors\n\nWhat **we** found, see [Figure 1](#path).\n")
+    assert text.startswith("# On <walks> & errors\n\nWhat **we** found, see [Figure 1](#figure-path).\n")
     assert "| a\\|b | 1.0 |" in text
     assert "| --- | ---: |" in text
     assert "![A path](paper/path.svg)" in text

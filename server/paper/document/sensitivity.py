@@ -123,7 +123,7 @@ def _resting(sweep: Figures) -> list[Block]:
 def _price(change: Figures) -> str:
     """Say what a variant does to all cells."""
     errors = list(change["filter_error_ratio"].values())
-    lost = listed([_cell(cell) for cell in change["lost"]]) if change["lost"] else "none"
+    lost = listed([_cell(cell) for cell in change["lost"]]) if len(change["lost"]) < len(errors) else "all"
     return (
         f"wins {count(change['wins'])} of {count(len(errors))}, loses {lost}; FAMM's filter error is then "
         f"{percent(min(errors))} to {percent(max(errors))} of CMM's, its ATE kept in {count(change['ate_kept'])}"
