@@ -51,6 +51,7 @@ th { border-bottom: 2px solid var(--line); vertical-align: bottom; white-space: 
 td { border-bottom: 1px solid var(--line); }
 .left { text-align: left; }
 .long { white-space: normal; min-width: 16rem; }
+.long code { overflow-wrap: anywhere; }
 @media print {
   @page { margin: 16mm; }
   :root { --ink: #000; --faint: #333; --paper: #fff; --line: #bbb; --link: #000; --band: #fff; }

@@ -13,7 +13,9 @@ from tracker.score import Figures
 _SENSORS = ("gps-imu", "camera-gps-imu")
 #: Markers that differ without colour, one a dataset.
 _MARKERS = {1: "o", 2: "s", 3: "D", 4: "^", 5: "v"}
-_RATIOS = (0.1, 0.2, 0.3, 0.5, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.4, 1.6, 2.0, 3.0, 5.0, 10.0)
+#: Ratios worth a tick, the worthiest first, and how far apart they stand at least, as a share of the axis.
+_RATIOS = (1.0, 10.0, 0.1, 2.0, 0.5, 5.0, 0.2, 3.0, 0.3, 1.5, 0.7, 1.2, 0.8, 1.1, 0.9)
+_APART = 0.11
 #: A ratio within this of one is a draw: what the project's own goal allows the camera.
 _DRAW = 0.02
 
@@ -154,11 +156,15 @@ def rivals_figure(rows: Sequence[Figures]) -> Figure:
 
 
 def _ratio_scale(axes: Axes) -> None:
-    """Show ratios by their logarithm, with numbers that a reader multiplies by."""
+    """Show ratios by their logarithm, with numbers that a reader multiplies by, and no more of them than there is room for."""
     axes.set_xscale("log")
-    low, high = axes.get_xlim()
-    ticks = [tick for tick in _RATIOS if low <= tick <= high]
-    axes.xaxis.set_major_locator(FixedLocator(ticks))
+    low, high = np.log(axes.get_xlim())
+    ticks: list[float] = []
+    for tick in _RATIOS:
+        place = float(np.log(tick))
+        if low <= place <= high and all(abs(place - np.log(other)) > _APART * (high - low) for other in ticks):
+            ticks.append(tick)
+    axes.xaxis.set_major_locator(FixedLocator(sorted(ticks)))
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
     axes.xaxis.set_minor_locator(NullLocator())
 

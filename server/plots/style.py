@@ -49,6 +49,7 @@ SELECTOR_COLOURS = {
     "reduced": "#8a5a2b",
     "dfa": "#4d9a6a",
     "imm": "#7a4fa3",
+    "precise": "#0e7c86",
     "truth": TRUTH,
 }
 SELECTOR_DASHES: dict[str, str | tuple[int, tuple[int, ...]]] = {
@@ -57,6 +58,7 @@ SELECTOR_DASHES: dict[str, str | tuple[int, tuple[int, ...]]] = {
     "reduced": (0, (3, 1, 1, 1)),
     "dfa": (0, (1, 1)),
     "imm": "-.",
+    "precise": (0, (8, 2, 2, 2)),
     "truth": "-",
 }
 
