@@ -43,6 +43,11 @@ class Results:
         """How many walks of each dataset there are."""
         return len(self.study["seeds"]) if self.study else 0
 
+    @property
+    def sigmas(self) -> list[Figures]:
+        """The study's state covariances, means over seeds: dataset, sensors, model, state_covariance."""
+        return self.study["sigma"] if self.study else []
+
     def cell(self, dataset: int, sensors: str, model: str) -> Figures | None:
         """Return one cell's means and spreads over seeds."""
         key = (dataset, sensors, model)

@@ -72,7 +72,7 @@ def _sigmas(results: Results, dataset: int) -> list[tuple[str, Array]]:
     """Return the study's mean state covariances in the paper's order."""
     found = {
         f"{row['sensors']}/{row['model']}": np.array(row["state_covariance"])
-        for row in (results.study or {}).get("sigma", [])
+        for row in results.sigmas
         if row["dataset"] == dataset
     }
     order = ("gps-imu/cmm", "gps-imu/famm", "camera-gps-imu/cmm", "camera-gps-imu/famm")

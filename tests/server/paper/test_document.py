@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from server.blocks import Document, Grid, Heading, Items, Text, numbers
@@ -168,6 +169,24 @@ def test_the_printed_tables() -> None:
     """Six of ten cells of the paper go down, as its arrows say."""
     assert sum(errors.change_percent < 0.0 for errors in FILTER_ERRORS.values()) == 6
     assert FILTER_ERRORS[3, "gps-imu"].change_percent == pytest.approx(-58.47, abs=0.01)
+
+
+def test_the_filters_own_uncertainty() -> None:
+    """Half the variance of P and forty times that of Omega is more in all, and told so; less in all is told too."""
+
+    def study(omega: float) -> Figures:
+        cmm = np.diag([4.0] * 3 + [1.0] * 3 + [1e-4] * 3 + [1.0] * 3)
+        famm = np.diag([2.0] * 3 + [1.0] * 3 + [1e-4] * 3 + [omega] * 3)
+        cell = {"dataset": 1, "sensors": "gps-imu"}
+        sigmas = [{**cell, "model": m, "state_covariance": s.tolist()} for m, s in (("cmm", cmm), ("famm", famm))]
+        return {**_study(), "sigma": sigmas}
+
+    more = _summary_of(Results(study(40.0)))
+    assert (
+        "it does so in no cell: the variances of the position are 0.50 of CMM's, and those of the angular rate 40"
+        in more
+    )
+    assert "it does so in one of one cells" in _summary_of(Results(study(1.0)))
 
 
 def test_how_much_the_model_matters() -> None:
