@@ -80,6 +80,12 @@ class PaperFamily:
         """Return the first member's pose at t_ns."""
         return self.members[0].predict(t_ns)
 
+    def poses(self, t_ns: int) -> list[Pose | None]:
+        """Return every member's pose at t_ns: how far the sensors have carried it is looked up once."""
+        path = self._sensors.path
+        then, cycle = path.at(t_ns), path.at(self.cycles[-1].t_ns if self.cycles else 0)
+        return [member.carried(t_ns, then, cycle) for member in self.members]
+
     def innovations(self) -> list[Innovation]:
         """Return the first member's updates since the last call and forget them."""
         return self.members[0].innovations()
@@ -110,8 +116,7 @@ def follow_family(family: PaperFamily, measurements: Iterable[Measurement], temp
             feed(pipeline, measurement, shared)
             continue
         on_second = (due_ns - template.t_start_ns) % 1_000_000_000 < 20_000_000
-        for member, run, sigma in zip(family.members, runs, sigmas, strict=True):
-            pose = member.predict(due_ns)
+        for member, pose, run, sigma in zip(family.members, family.poses(due_ns), runs, sigmas, strict=True):
             if pose is not None:
                 run.poses.append(pose)
             Sigma = member.state_covariance() if on_second else None

@@ -16,6 +16,7 @@ from tracker.cycle import Cycle, CycleFilter, InnovationReading
 from tracker.estimator import Innovation, Origin, Pose, Snapshot
 from tracker.fusion import FusionSettings
 from tracker.geometry import conjugate, multiply, normalise, wxyz_from_rpy, wxyz_from_yaw
+from tracker.inertial import InertialState
 from tracker.measurements import Matrix, Measurement, Outcome
 from tracker.motion import MotionSelector
 from tracker.readings import SensorSettings
@@ -89,8 +90,12 @@ class PaperEstimator:
 
     def predict(self, t_ns: int) -> Pose | None:
         """Return the pose at t_ns: the last filtered one, moved by the inertial path between its cycle and t_ns."""
-        filter_, path = self._fusion.filter, self._sensors.path
-        then, cycle = path.at(t_ns), path.at(self._fusion.t_ns)
+        path = self._sensors.path
+        return self.carried(t_ns, path.at(t_ns), path.at(self._fusion.t_ns))
+
+    def carried(self, t_ns: int, then: InertialState | None, cycle: InertialState | None) -> Pose | None:
+        """Return the pose at t_ns, where the inertial path is at that time and at the last cycle's known."""
+        filter_ = self._fusion.filter
         if filter_ is None or then is None or cycle is None:
             return None
         x, y, z = (p + a - b for p, a, b in zip(filter_.position_m, then.p_m, cycle.p_m, strict=True))
