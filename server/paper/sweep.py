@@ -12,7 +12,7 @@ import numpy as np
 from server.paper.cases import Case, sources_key
 from server.paper.digits import write_figures
 from server.paper.record import Recording, read_recording, record_case, refilter
-from server.paper.statistics import CAMERA, PLAIN, STATIONARY, paired
+from server.paper.statistics import CAMERA, PLAIN, PRINTED_ONE, STATIONARY, paired
 from server.paper.tasks import FOLDER, Task, kept_file, progress_bar, run_tasks
 from server.paper.variants import DEFAULT, RULE_MEANINGS, Variant, variants
 from tracker.fusion import FusionSettings
@@ -21,8 +21,6 @@ from tracker.score import Figures
 
 #: Not those of the study, which are to judge what these have chosen.
 SEEDS = tuple(range(101, 109))
-#: A median ratio of ATE that is printed as 1.00.
-ATE_RATIO = 1.005
 #: The share of a stationary walk that the paper's P0R0 is asked for.
 RESTING = 0.95
 RULE = (
@@ -97,7 +95,7 @@ def _judged(variant: Variant, cells: Mapping[str, Sequence[Figures]]) -> Figures
         **variant.described(),
         "wins": sum(found["difference_mean"] < 0.0 for found in error.values()),
         "sure_wins": sum(found["interval_t"][1] < 0.0 for found in error.values()),
-        "ate_kept": sum(found["ratio_median"] <= ATE_RATIO for found in ate.values()),
+        "ate_kept": sum(found["ratio_median"] <= PRINTED_ONE for found in ate.values()),
         "lost": [cell for cell, found in error.items() if found["difference_mean"] >= 0.0],
         "rotation_wins": sum(found["difference_mean"] < 0.0 for found in turn.values()),
         "rotation_sure_wins": sum(found["interval_t"][1] < 0.0 for found in turn.values()),

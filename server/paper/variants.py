@@ -7,6 +7,7 @@ and rotation apart, so a membership of one has no say in the other's errors: two
 
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, field, replace
+from itertools import product
 from typing import Any
 
 from tracker.cycle import InnovationReading
@@ -28,8 +29,8 @@ POSITION_LOW_M = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.25, 1.5)
 POSITION_HIGH_M = (0.8, 1.5, 2.25, 3.5)
 ROTATION_LOW_RAD = (0.01, 0.02, 0.035, 0.05, 0.1, 0.15)
 ROTATION_HIGH_RAD = (0.1, 0.275, 0.5)
-#: The whole position's membership stretched, for the stationary set.
-REST_SCALES = (1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0)
+#: The whole position's membership stretched until Low meets Medium here, for the stationary set.
+REST_LOW_M = (0.6, 0.8, 1.0, 1.1, 1.2, 1.3, 1.4, 1.5, 1.75, 2.0, 2.5, 3.0, 3.25, 3.5, 3.75, 4.0, 5.0)
 ACCEL_NOISE_M_S2 = (0.5, 1.0, 2.0, 3.0, 4.5, 6.0)
 ANGULAR_NOISE_RAD_S2 = (0.25, 0.5, 1.0, 2.0, 4.0)
 ROTATION_SIGMA_RAD = (0.0011, 0.0022, 0.0044, 0.0088, 0.0176)
@@ -124,14 +125,21 @@ def _rotations() -> Iterator[Variant]:
 
 def _stretched() -> Iterator[Variant]:
     low, medium, high = asdict(POSITION_MEMBERSHIP_M).values()
-    for scale in REST_SCALES:
-        yield Variant("rest", f"{scale:g}", position=Membership(scale * low, scale * medium, scale * high))
+    for scale in (low_m / (0.5 * (low + medium)) for low_m in REST_LOW_M):
+        if scale <= 1.0:
+            continue
+        yield Variant("rest", f"{scale:.4g}", position=Membership(scale * low, scale * medium, scale * high))
 
 
 def _noises() -> Iterator[Variant]:
     usual = FusionSettings()
     for value in ACCEL_NOISE_M_S2:
         yield Variant("accel noise", f"{value:g} m/s2", fusion=replace(usual, accel_noise_m_s2=value))
+    for value, low_m in product(ACCEL_NOISE_M_S2[1:3], POSITION_LOW_M[1:5]):
+        fusion = replace(usual, accel_noise_m_s2=value)
+        yield Variant(
+            "accel noise with position", f"{value:g} m/s2, {low_m:g} m", crossing_at(low_m, 2.25), fusion=fusion
+        )
     for value in ANGULAR_NOISE_RAD_S2:
         yield Variant("angular noise", f"{value:g} rad/s2", fusion=replace(usual, angular_accel_noise_rad_s2=value))
     for value in ROTATION_SIGMA_RAD:

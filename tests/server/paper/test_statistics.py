@@ -104,6 +104,9 @@ def test_claims_name_the_cells() -> None:
     assert len(found["famm_filter_error_lower"]) == len(found["famm_filter_error_lower_surely"]) == 8
     assert found["famm_ate_ratio_median"]["2/camera-gps-imu"] == pytest.approx(1.8)
     assert "2/camera-gps-imu" not in found["famm_ate_at_most_cmm"]
+    scales[1, "gps-imu", "famm"] = 1.004
+    printed = summary(_study(scales))["claims"]
+    assert set(printed["famm_ate_at_most_1_00"]) - set(printed["famm_ate_at_most_cmm"]) == {"1/gps-imu"}
     # dataset 2 under CMM is better with the camera; under FAMM, and in the others, it makes no difference
     assert found["camera_better"] == ["2/cmm"]
     assert found["camera_worse_by_2_percent"] == []
