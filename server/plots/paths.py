@@ -78,7 +78,7 @@ def _strays(trace: Trace) -> str:
 def _most_used(trace: Trace) -> str:
     names, counts = np.unique(trace.update_model, return_counts=True)
     if len(names) == 0:
-        return "no filter"
+        return "no motion model"
     best = int(np.argmax(counts))
     return f"{names[best]} in {100.0 * counts[best] / counts.sum():.0f} % of its updates"
 
