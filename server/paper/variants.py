@@ -27,8 +27,8 @@ from tracker.motion import FuzzyMotion
 #: Crossings of Low and Medium, then of Medium and High.
 POSITION_LOW_M = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.25, 1.5)
 POSITION_HIGH_M = (0.8, 1.5, 2.25, 3.5)
-ROTATION_LOW_RAD = (0.01, 0.02, 0.035, 0.05, 0.1, 0.15)
-ROTATION_HIGH_RAD = (0.1, 0.275, 0.5)
+ROTATION_LOW_RAD = (0.02, 0.035, 0.05, 0.075, 0.1, 0.15, 0.2, 0.3)
+ROTATION_HIGH_RAD = (0.1, 0.15, 0.275, 0.5, 1.0)
 #: The whole position's membership stretched until Low meets Medium here, for the stationary set.
 REST_LOW_M = (0.6, 0.8, 1.0, 1.1, 1.2, 1.3, 1.4, 1.5, 1.75, 2.0, 2.5, 3.0, 3.25, 3.5, 3.75, 4.0, 5.0)
 ACCEL_NOISE_M_S2 = (0.5, 1.0, 2.0, 3.0, 4.5, 6.0)
