@@ -22,7 +22,7 @@ from tracker.score import Figures
 SEEDS = tuple(range(1, 17))
 #: Whose Sigma is drawn, and whose rules are counted.
 WITH_SIGMA = ("cmm", "famm")
-FUZZY = ("famm", "reduced")
+WITH_RULES = ("famm",)
 #: Figures of a run that say how fast this machine is, or what the study has no pictures for.
 _LEFT_OUT = ("log", "estimator", "latency_ms", "realtime_factor", "vision_rate_hz", "counts")
 #: A loop is closed from here (the visitor still stands where the walk begins) to the end.
@@ -62,7 +62,7 @@ def row_of(case: Case, run: Run, seen: Seen) -> Figures:
     row["loop_closure_m"] = loop_closure_m(run) if case.dataset == 5 else None
     if sensors.startswith("camera"):
         row["camera"] = camera_figures(seen)
-    if model in FUZZY:
+    if model in WITH_RULES:
         row["rules_fired"] = rules_fired(run)
     if model in WITH_SIGMA and run.state_covariance is not None:
         row["state_covariance"] = run.state_covariance.tolist()
