@@ -10,7 +10,8 @@ from server.plots.style import drawn
 from server.tables import once
 from tracker.score import Figures
 
-_FACTORS = ("accel noise", "angular noise", "rotation sigma", "GPS variance", "innovation", "rules")
+#: Factors that are drawn, or told in words; the others are a table.
+_DRAWN = frozenset({"default", "position", "rotation", "rest"})
 
 
 def sensitivity(results: Results) -> list[Block]:
@@ -54,7 +55,7 @@ def _chosen(sweep: Figures) -> str:
 
 def _factors(variants: Sequence[Figures], default: Figures, meanings: Figures, cells: int) -> Grid:
     rows = [_row("default", "as shipped", default, cells)]
-    for factor in _FACTORS:
+    for factor in dict.fromkeys(row["factor"] for row in variants if row["factor"] not in _DRAWN):
         for row in (row for row in variants if row["factor"] == factor):
             value = f"{row['value']}: {meanings[row['value']]}" if factor == "rules" else row["value"]
             rows.append(_row(factor, value, row, cells))
