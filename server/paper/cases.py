@@ -51,7 +51,7 @@ class Seen:
 def sources_key(*names: str) -> str:
     """Return a name for all that results depend on: tracker, site, what makes measurements, and the named files beside this."""
     files = [
-        *(ROOT / "tracker").rglob("*.py"),
+        *(ROOT / "tracker").glob("*.py"),  # not tracker/precise: an estimator of its own, which no study runs
         *(ROOT / "assets").rglob("*.py"),
         *SITE.glob("*.toml"),
         *(ROOT / "server").glob("*motions.py"),
