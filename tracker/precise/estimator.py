@@ -19,6 +19,7 @@ from tracker.measurements import (
     Outcome,
     VisualMotion,
 )
+from tracker.precise.blend import Blend
 from tracker.precise.compass import Compass
 from tracker.precise.engine import Engine
 from tracker.precise.error_state import ErrorState
@@ -54,6 +55,7 @@ class PreciseEstimator:
         self._gravity = gravity_m_s2(origin.lat_deg, origin.h_ellipsoid_m)
         self._timeline = Timeline()
         self._engine = Engine(self._settings, SiteFrame(origin), rig, compass, self._gravity)
+        self._blend = Blend(self._settings.blend_s)
         self._free: list[tuple[Navigation, ImuSample]] = []
         """The strapdown integral that no measurement corrects, and the sample that ended each step."""
 
@@ -91,8 +93,15 @@ class PreciseEstimator:
         newest_ns, timeline, engine = self._timeline.newest_ns, self._timeline, self._engine
         if newest_ns is None:
             return
-        for measurement in timeline.take(newest_ns - round(self._settings.lag_s * 1e9)):
+        taken = timeline.take(newest_ns - round(self._settings.lag_s * 1e9))
+        if not taken:
+            return
+        before = engine.best.nav if engine.hypotheses is not None else None
+        corrections = engine.hypotheses.corrections if engine.hypotheses is not None else 0
+        for measurement in taken:
             engine.take(measurement, timeline.imu[0] if timeline.imu else None)
+        if before is not None and engine.hypotheses is not None and engine.hypotheses.corrections != corrections:
+            self._blend.corrected(self._carried(before, newest_ns), self._carried(engine.best.nav, newest_ns))
 
     def _integrate(self, sample: ImuSample) -> None:
         """Carry the free integral on; a sample that came late has it done again from there."""
@@ -128,21 +137,20 @@ class PreciseEstimator:
         if engine.hypotheses is None:
             return None
         best = engine.best
-        start, end = self._free_at(best.nav.t_ns), self._free_at(t_ns)
-        if start is None or end is None:
-            return None
-        nav = carried(best.nav, start, end, self._gravity)
+        nav = self._blend.shown(self._carried(best.nav, t_ns))
         cov = self._covariance(best, (t_ns - best.nav.t_ns) * 1e-9)
         if not all(map(isfinite, (*nav.p_m, *nav.wxyz_site_body))) or not np.all(np.isfinite(cov)):
             return None
         known = float(cov[5, 5]) < self._settings.heading_known_rad**2
         return Pose(t_ns, nav.p_m, nav.wxyz_site_body, nav.v_m_s, cov, engine.model, known)
 
-    def _free_at(self, t_ns: int) -> Navigation | None:
+    def _carried(self, state: Navigation, t_ns: int) -> Navigation:
+        """Return a state of the filter, carried on to a time by the free integral."""
+        return carried(state, self._free_at(state.t_ns), self._free_at(t_ns), self._gravity)
+
+    def _free_at(self, t_ns: int) -> Navigation:
         """Return the free integral at a time: between two samples, or carried on after the newest."""
         free = self._free
-        if not free:
-            return None
         nav, sample = free[-1]
         if t_ns >= nav.t_ns:
             return self._beyond(nav, sample, t_ns)
@@ -199,11 +207,11 @@ class PreciseEstimator:
 
     def snapshot(self) -> Snapshot:
         """Return the whole state."""
-        return deepcopy((self._timeline, self._engine, self._free))
+        return deepcopy((self._timeline, self._engine, self._blend, self._free))
 
     def restore(self, snapshot: Snapshot) -> None:
         """Become what the snapshot was taken of."""
-        self._timeline, self._engine, self._free = deepcopy(snapshot)
+        self._timeline, self._engine, self._blend, self._free = deepcopy(snapshot)
 
 
 def _refusal(measurement: Measurement) -> Outcome | None:

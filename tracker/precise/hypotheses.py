@@ -28,6 +28,8 @@ class Hypotheses:
     def __init__(self, filter_: ErrorState) -> None:
         self._all: list[tuple[ErrorState, float]] = [(filter_, 0.0)]
         """Filters and their log weights, the best one first."""
+        self.corrections = 0
+        """How many measurements have been taken in."""
 
     @property
     def best(self) -> ErrorState:
@@ -60,6 +62,7 @@ class Hypotheses:
 
     def correct(self, correction: Callable[[ErrorState], Correction | None]) -> Correction | None:
         """Correct every filter, weigh them by what they foresaw, and return what the best one saw."""
+        self.corrections += 1
         done = [(filter_, weight, correction(filter_)) for filter_, weight in self._all]
         result = done[0][2]
         if len(done) > 1:

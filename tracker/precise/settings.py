@@ -58,6 +58,8 @@ class PreciseSettings:
     """Of a direction of travel, at best;"""
     vision_point_px: float = 1.5
     """and this, by the parallax in pixels, where that is worse."""
+    blend_s: float = 0.8
+    """A correction moves what is shown with this time constant: a temple that jumps is worse than one that is off."""
     hypotheses: int = 8
     """So many headings are tried where motion must tell north."""
     converged_rad: float = 5.0 * pi / 180.0
