@@ -52,6 +52,7 @@ td { border-bottom: 1px solid var(--line); }
 .left { text-align: left; }
 .long { white-space: normal; min-width: 16rem; }
 .long code { overflow-wrap: anywhere; }
+@media (max-width: 40rem) { figure.picture img { width: 38rem; max-width: none; } }
 @media print {
   @page { margin: 16mm; }
   :root { --ink: #000; --faint: #333; --paper: #fff; --line: #bbb; --link: #000; --band: #fff; }
@@ -97,8 +98,9 @@ def _picture(picture: Picture, names: Mapping[str, str]) -> str:
     data = b64encode(picture.data).decode("ascii")
     caption = f"<b>{names[picture.name]}.</b> {_inline(picture.caption, names)}"
     return (
-        f'<figure class="picture" id="{anchor(picture.name, names[picture.name])}"><img alt="{escape(picture.alt)}" '
-        f'src="data:{_MIME[picture.kind]};base64,{data}"><figcaption>{caption}</figcaption></figure>'
+        f'<figure class="picture" id="{anchor(picture.name, names[picture.name])}"><div class="scroll">'
+        f'<img alt="{escape(picture.alt)}" '
+        f'src="data:{_MIME[picture.kind]};base64,{data}"></div><figcaption>{caption}</figcaption></figure>'
     )
 
 
@@ -162,7 +164,7 @@ def _inline(text: str, names: Mapping[str, str]) -> str:
 
 
 def _marked(text: str) -> str:
-    out = escape(text, quote=False)
+    out = escape(text, quote=False).replace(" %", "\u00a0%")
     out = re.sub(r"\[([^\]]+)\]\(([^)\s]+)\)", lambda m: f'<a href="{escape(m[2])}">{m[1]}</a>', out)
     out = re.sub(r"\*\*([^*]+)\*\*", r"<b>\1</b>", out)
     return re.sub(r"(?<![\w*])\*([^*\s][^*]*)\*(?![\w*])", r"<em>\1</em>", out)

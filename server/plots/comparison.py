@@ -49,7 +49,7 @@ def paired_figure(rows: Sequence[Figures], printed: Mapping[tuple[int, str], flo
             axes.set_xscale("symlog", linthresh=10.0)
             ticks = [-50, -10, -5, 0, 5, 10, 100]
             axes.set_xticks(ticks, [f"{tick:+d}" if tick else "0" for tick in ticks])
-            axes.set_xlim(-80.0, 250.0)
+            axes.set_xlim(-80.0, max(250.0, *(1.3 * change_percent(row)[0] for row in rows)))
         grid[0].set_ylabel("dataset")
     return figure
 
