@@ -59,6 +59,7 @@ class Engine:
         self._last: ImuSample | None = None
         self.hypotheses: Hypotheses | None = None
         """None until the first half second of inertial samples."""
+        self._began_ns: int | None = None
         self.fix_ns: int | None = None
         """Of the last fix taken in."""
         self._velocity_ns: int | None = None
@@ -66,6 +67,13 @@ class Engine:
         self._suspicion = 0.0
         self.heading_found = False
         self.innovations: list[Innovation] = []
+
+    @property
+    def age_s(self) -> float:
+        """How long the filter has run."""
+        if self.hypotheses is None or self._began_ns is None:
+            return 0.0
+        return (self.best.nav.t_ns - self._began_ns) * 1e-9
 
     @property
     def model(self) -> str:
@@ -123,6 +131,7 @@ class Engine:
         if hypot(x, y, z) < 1.0:
             return  # a rig in free fall has no up
         settings, zero = self._settings, (0.0, 0.0, 0.0)
+        self._began_ns = sample.t_ns
         nav = Navigation(sample.t_ns, zero, zero, wxyz_level_from_gravity((x, y, z)))
         cov = start_covariance(settings, (1e3, 1e3, 1e3), 1.0, pi / sqrt(3.0))
         self.hypotheses = Hypotheses(ErrorState(settings, nav, Biases(), cov, self._gravity))

@@ -33,6 +33,8 @@ _KINDS = (ImuSample, MagSample, CompassHeading, GpsFix, GpsVelocity, VisualMotio
 _FASTEST_CLOCK_NS = 2_000_000_000
 #: A prediction goes on with the last rates at most this long, and turns on for the first part of it.
 _LONGEST_PREDICTION_S, _LONGEST_TURN_S = 1.0, 0.1
+#: A receiver that has told no position for this long may not be there: attitude alone is better than nothing.
+_WAIT_FOR_FIX_S = 3.0
 #: States of the free integral are kept for predictions of the recent past.
 _KEPT_S = 2.0
 
@@ -134,7 +136,7 @@ class PreciseEstimator:
     def predict(self, t_ns: int) -> Pose | None:
         """Return the pose at t_ns."""
         engine = self._engine
-        if engine.hypotheses is None:
+        if engine.hypotheses is None or (engine.fix_ns is None and engine.age_s < _WAIT_FOR_FIX_S):
             return None
         best = engine.best
         nav = self._blend.shown(self._carried(best.nav, t_ns))
