@@ -7,6 +7,8 @@ from typing import Any
 
 #: More than any figure of a study is good for, fewer than two machines' arithmetic may differ in.
 DIGITS = 5
+#: A longer object has one entry a line.
+_LONGEST_LINE = 200
 
 
 def rounded(value: Any, digits: int = DIGITS) -> Any:
@@ -24,14 +26,18 @@ def rounded(value: Any, digits: int = DIGITS) -> Any:
 
 
 def write_figures(path: Path, figures: dict[str, Any]) -> None:
-    """Write figures: lists of rows one row a line, everything else as it is, rounded."""
-    parts = []
-    for key, value in rounded(figures).items():
-        if isinstance(value, list) and value and isinstance(value[0], dict):
-            lines = ",\n".join(json.dumps(row, separators=(",", ":"), allow_nan=False) for row in value)
-            text = f"[\n{lines}\n]"
-        else:
-            text = json.dumps(value, indent=1, allow_nan=False)
-        parts.append(f"{json.dumps(key)}: {text}")
+    """Write figures, rounded: a list of rows has one row a line, so that a difference between two files can be read."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text("{\n" + ",\n".join(parts) + "\n}\n", encoding="utf-8")
+    path.write_text(_text(rounded(figures)) + "\n", encoding="utf-8")
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, list) and value and isinstance(value[0], dict):
+        return "[\n" + ",\n".join(map(_line, value)) + "\n]"
+    if isinstance(value, dict) and len(_line(value)) > _LONGEST_LINE:
+        return "{\n" + ",\n".join(f"{_line(key)}: {_text(entry)}" for key, entry in value.items()) + "\n}"
+    return _line(value)
+
+
+def _line(value: Any) -> str:
+    return json.dumps(value, separators=(",", ":"), allow_nan=False)

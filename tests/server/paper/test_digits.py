@@ -36,7 +36,14 @@ def test_what_json_cannot_hold_is_refused() -> None:
 def test_a_row_is_a_line(tmp_path: Path) -> None:
     """So that a difference between two studies can be read."""
     path = tmp_path / "new" / "study.json"
-    write_figures(path, {"seeds": [1, 2], "rows": [{"seed": 1, "x": 0.1}, {"seed": 2, "x": 1 / 3}], "none": []})
+    rows = [{"seed": seed, "x": seed / 3.0} for seed in range(20)]
+    write_figures(path, {"seeds": [1, 2], "summary": {"cells": rows, "claims": {"won": ["1/gps-imu"]}}, "none": []})
     text = path.read_text(encoding="utf-8")
-    assert json.loads(text) == {"seeds": [1, 2], "rows": [{"seed": 1, "x": 0.1}, {"seed": 2, "x": 0.33333}], "none": []}
-    assert '{"seed":2,"x":0.33333}\n' in text
+    assert json.loads(text) == {
+        "seeds": [1, 2],
+        "summary": {"cells": rounded(rows), "claims": {"won": ["1/gps-imu"]}},
+        "none": [],
+    }
+    assert text.count('\n{"seed":') == len(rows)
+    assert '\n{"seed":2,"x":0.66667},\n' in text
+    assert '"claims": {"won":["1/gps-imu"]}\n' in text
