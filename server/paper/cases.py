@@ -48,10 +48,18 @@ class Seen:
     motions: list[VisualMotion]
 
 
-def sources_key(*names: str) -> str:
-    """Return a name for all that results depend on: tracker, site, what makes measurements, and the named files beside this."""
+#: Files of the tracker that filter cycles: what the cycles are does not depend on them.
+FILTERING = ("dfa", "fusion", "fuzzy", "imm", "motion")
+
+
+def sources_key(*names: str, without: tuple[str, ...] = ()) -> str:
+    """Return a name for all that results depend on: tracker, site, what makes measurements, and the named files beside this.
+
+    `without` names files of the tracker that have no say.
+    """
     files = [
-        *(ROOT / "tracker").glob("*.py"),  # not tracker/precise: an estimator of its own, which no study runs
+        # not tracker/precise: an estimator of its own, which no study runs
+        *(path for path in (ROOT / "tracker").glob("*.py") if path.stem not in without),
         *(ROOT / "assets").rglob("*.py"),
         *SITE.glob("*.toml"),
         *(ROOT / "server").glob("*motions.py"),

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from server.paper.cases import Case, sources_key
+from server.paper.cases import FILTERING, Case, sources_key
 from server.paper.digits import write_figures
 from server.paper.record import Recording, read_recording, record_case, refilter
 from server.paper.statistics import CAMERA, PLAIN, PRINTED_ONE, STATIONARY, paired
@@ -35,7 +35,7 @@ def sweep(path: Path, seeds: Iterable[int] = SEEDS, jobs: int = 1, folder: Path 
     """Record every case, filter it with every variant, and write what is found."""
     seeds = tuple(seeds)
     cases = [Case(dataset, seed) for dataset in (1, 5, 2, 4, 3) for seed in seeds]
-    key = sources_key("record")
+    key = sources_key("record", without=FILTERING)
     with progress_bar("recording") as bar:
         records = [Task(f"record-{case.name}", record_case, (case.dataset, case.seed)) for case in cases]
         run_tasks(records, key=key, jobs=jobs, folder=folder, done=bar)
