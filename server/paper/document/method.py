@@ -121,8 +121,8 @@ def _reading_grid(readings: Figures) -> Grid:
         f"What each reading does to FAMM on dataset {readings['dataset']}, seed {readings['seed']}. The literal ones are here to "
         "be seen, not to be used; with `nis` the breakpoints of the memberships are read as standard deviations. The last two rows "
         "take away what is ours and not the paper's: with `anchor_s = 0.1` only the last fix counts, where otherwise the camera's "
-        "path carries those of ten seconds to one place and their white error averages out; with `camera_north = false` north stays "
-        "where the start heading and the gyroscope have it."
+        "path carries those of ten seconds to one place and their white error averages out; with `camera_north = false` north "
+        "stays where the start heading and the gyroscope have it."
     )
     head = ("sensors", "reading", "filter error, m", "change", "ATE, m", "RPE 10 s, m", "P0R0, %")
     return Grid("readings", caption, head, once(rows), left=2)
