@@ -18,7 +18,16 @@ Reference:
 
 from dataclasses import dataclass
 
-from tracker.fuzzy import MOTION_MODELS, NEXT_INDEX, Index, MotionModel
+from tracker.fuzzy import (
+    MOTION_MODELS,
+    NEXT_INDEX,
+    POSITION_MEMBERSHIP_M,
+    ROTATION_MEMBERSHIP_RAD,
+    FuzzySettings,
+    Index,
+    Membership,
+    MotionModel,
+)
 
 #: NEXT_STATE[i]: the velocity coefficient that follows coefficient i after a large innovation.
 NEXT_STATE: tuple[Index, Index, Index] = NEXT_INDEX["Medium"]
@@ -28,14 +37,19 @@ NEXT_STATE: tuple[Index, Index, Index] = NEXT_INDEX["Medium"]
 class Automaton:
     """Stateless: the model that it is in is handed to it, as to the fuzzy controller."""
 
-    position: float = 1.0
+    position: float = POSITION_MEMBERSHIP_M.crossovers()[0]
     """The largest innovation that is small, m (or sqrt(NIS))."""
-    rotation: float = 0.1
+    rotation: float = ROTATION_MEMBERSHIP_RAD.crossovers()[0]
     """The same of rotation, rad (or sqrt(NIS))."""
 
     def __post_init__(self) -> None:
         if not (self.position > 0.0 and self.rotation > 0.0):
             raise ValueError(f"expected thresholds above 0, got {self.position}, {self.rotation}")
+
+    @classmethod
+    def of(cls, settings: FuzzySettings) -> "Automaton":
+        """Return one whose thresholds are where Low and Medium cross."""
+        return cls(Membership(*settings.position_m).crossovers()[0], Membership(*settings.rotation_rad).crossovers()[0])
 
     def next_model(self, y_p: float, y_r: float, model: MotionModel) -> MotionModel:
         """Return the state that follows; an innovation that is no number is large.

@@ -102,7 +102,7 @@ def build(
         )
     return PaperEstimator(
         name,
-        SELECTORS[kind](),
+        SELECTORS[kind].of(settings.paper.fuzzy),
         origin=origin,
         rig=rig,
         declination_rad=declination_rad,

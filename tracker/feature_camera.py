@@ -71,7 +71,8 @@ class Faults:
     kept_share: float = 0.91
     """Of the drift so far; the rest goes with every step, for most of it is where pixels happen to lie on the corner."""
     slide: float = 0.025
-    """What two outlines make goes with neither: so far, per pixel of parallax, in the median of corners on a rim,"""
+    """What two outlines make goes with neither: so far, per pixel of parallax, in the median of corners on a rim
+    (in drawn pictures mostly along the epipolar line, here any way),"""
     slide_spread: float = 1.4
     """ and the deviation of its logarithm."""
     slip_rate: float = 0.001

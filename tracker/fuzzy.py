@@ -14,6 +14,8 @@ from functools import cached_property
 from itertools import product
 from typing import Literal, TypeAlias
 
+from tracker.measurements import Vector3
+
 Level: TypeAlias = Literal["Low", "Medium", "High"]
 Index: TypeAlias = Literal[0, 1, 2]
 #: What follows coefficients 0, 1 and 2, for each level of the innovation.
@@ -103,8 +105,7 @@ def rules_by_name() -> dict[str, str]:
 class Membership:
     """Three input membership functions that sum to one (a Ruspini partition): shoulder, triangle, shoulder.
 
-    The paper's figure of them (fig. "Input membership functions") is lost; these breakpoints are our default, chosen so that its
-    stationary set (mean filter error 0.15 to 0.37 m) is Low and its walking sets (0.5 to 1.2 m) are Low to Medium.
+    The paper's figure of them (fig. "Input membership functions") is lost; `FuzzySettings` has ours.
     """
 
     low: float
@@ -150,8 +151,26 @@ def _last(holds: Callable[[float], bool], below: float, above: float) -> float:
     return below
 
 
-POSITION_MEMBERSHIP_M = Membership(0.5, 1.5, 3.0)
-ROTATION_MEMBERSHIP_RAD = Membership(0.05, 0.15, 0.40)
+@dataclass(frozen=True)
+class FuzzySettings:
+    """Breakpoints of the two inputs. The defaults come from the sweep (docs/paper.md, "Sensitivity"), by the rule stated there.
+
+    Only where two functions cross has a say. From 0.8 m on for the first crossing, a standing rig with a camera lies at P0R0 so
+    long that the constant model foresees better.
+    """
+
+    position_m: Vector3 = (0.15, 0.45, 2.55)
+    """Innovations of position that are wholly Low, Medium and High: Low ends at 0.3 m, High begins at 1.5 m."""
+    rotation_rad: Vector3 = (0.15, 0.45, 1.55)
+    """Innovations of rotation that are wholly Low, Medium and High: Low ends at 0.3 rad, High begins at 1 rad."""
+
+    def __post_init__(self) -> None:
+        Membership(*self.position_m)
+        Membership(*self.rotation_rad)
+
+
+POSITION_MEMBERSHIP_M = Membership(*FuzzySettings().position_m)
+ROTATION_MEMBERSHIP_RAD = Membership(*FuzzySettings().rotation_rad)
 
 
 class FuzzyController:

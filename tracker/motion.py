@@ -7,7 +7,7 @@ from typing import Protocol, Self
 
 from tracker.dfa import Automaton
 from tracker.fusion import FusionFilter, FusionSettings
-from tracker.fuzzy import FuzzyController, MotionModel, ReducedController
+from tracker.fuzzy import FuzzyController, FuzzySettings, Membership, MotionModel, ReducedController
 from tracker.imm import InteractingFilter
 from tracker.measurements import Matrix, Vector3
 
@@ -76,6 +76,11 @@ class MotionSelector(Protocol):
 
     filter_kind: type[MotionFilter]
 
+    @classmethod
+    def of(cls, settings: FuzzySettings) -> "MotionSelector":
+        """Return one with these breakpoints, where it has any."""
+        ...
+
     @property
     def first(self) -> MotionModel:
         """The model of the first prediction."""
@@ -92,6 +97,11 @@ class ConstantMotion:
     filter_kind: type[MotionFilter] = FusionFilter
     first = CONSTANT
 
+    @classmethod
+    def of(cls, settings: FuzzySettings) -> "ConstantMotion":
+        """Return one; it has no breakpoints."""
+        return cls()
+
     def following(self, y_p_m: float, y_r_rad: float, filter_: MotionFilter, model: MotionModel) -> MotionModel:
         """Return P1R1, whatever the innovation."""
         return CONSTANT
@@ -106,6 +116,11 @@ class FuzzyMotion:
     def __init__(self, controller: FuzzyController | None = None) -> None:
         self._controller = controller or FuzzyController()
 
+    @classmethod
+    def of(cls, settings: FuzzySettings) -> "FuzzyMotion":
+        """Return one with these breakpoints."""
+        return cls(FuzzyController(Membership(*settings.position_m), Membership(*settings.rotation_rad)))
+
     def following(self, y_p_m: float, y_r_rad: float, filter_: MotionFilter, model: MotionModel) -> MotionModel:
         """Return the consequent of the strongest rule."""
         return self._controller.next_model(y_p_m, y_r_rad, model)
@@ -117,6 +132,11 @@ class ReducedMotion(FuzzyMotion):
     def __init__(self, controller: ReducedController | None = None) -> None:
         super().__init__(controller or ReducedController())
 
+    @classmethod
+    def of(cls, settings: FuzzySettings) -> "ReducedMotion":
+        """Return one with these breakpoints."""
+        return cls(ReducedController(Membership(*settings.position_m), Membership(*settings.rotation_rad)))
+
 
 class AutomatonMotion:
     """DFA: crisp thresholds on the innovation lead from one of the nine to another."""
@@ -126,6 +146,11 @@ class AutomatonMotion:
 
     def __init__(self, automaton: Automaton | None = None) -> None:
         self._automaton = automaton or Automaton()
+
+    @classmethod
+    def of(cls, settings: FuzzySettings) -> "AutomatonMotion":
+        """Return one whose thresholds are the first crossings of these."""
+        return cls(Automaton.of(settings))
 
     def following(self, y_p_m: float, y_r_rad: float, filter_: MotionFilter, model: MotionModel) -> MotionModel:
         """Return the automaton's next state."""
@@ -137,6 +162,11 @@ class InteractingMotion:
 
     filter_kind: type[MotionFilter] = InteractingFilter
     first = CONSTANT
+
+    @classmethod
+    def of(cls, settings: FuzzySettings) -> "InteractingMotion":
+        """Return one; it has no breakpoints."""
+        return cls()
 
     def following(self, y_p_m: float, y_r_rad: float, filter_: MotionFilter, model: MotionModel) -> MotionModel:
         """Return the likeliest model."""

@@ -15,6 +15,7 @@ import numpy as np
 from tracker.cycle import Cycle, CycleFilter, InnovationReading
 from tracker.estimator import Innovation, Origin, Pose, Snapshot
 from tracker.fusion import FusionSettings
+from tracker.fuzzy import FuzzySettings
 from tracker.geometry import conjugate, multiply, normalise, wxyz_from_rpy, wxyz_from_yaw
 from tracker.inertial import InertialState
 from tracker.measurements import Matrix, Measurement, Outcome
@@ -30,6 +31,7 @@ class PaperSettings:
 
     sensors: SensorSettings = field(default_factory=SensorSettings)
     fusion: FusionSettings = field(default_factory=FusionSettings)
+    fuzzy: FuzzySettings = field(default_factory=FuzzySettings)
     innovation: InnovationReading = "metres"
     """What the controller is given: metres (and radians), or nis: divided by what the filter expected of it."""
     tilt_sigma_rad: float = 0.017

@@ -25,6 +25,10 @@ class SensorSettings:
     origin or the Earth's centre."""
     m_imu: InertialReading = "sane"
     """sane: turned to the site, gravity removed, integrated since the fix; literal: four samples, their mean at rest subtracted."""
+    calibration: bool = True
+    """Subtract the gyroscope's mean over the rest at the start of a walk: the paper's 5000 samples."""
+    mean_samples: int = 4
+    """Inertial samples that are averaged: the paper's four."""
     gps_var_m2: Vector3 = (2.12**2, 2.12**2, 4.0**2)
     """For a receiver that states none: 2.5 m CEP."""
     gps_floor_m: float = 1.0
@@ -43,6 +47,7 @@ class SensorSettings:
     def __post_init__(self) -> None:
         require_positive(
             cycle_s=self.cycle_s,
+            mean_samples=self.mean_samples,
             gps_var_m2=min(self.gps_var_m2),
             gps_floor_m=self.gps_floor_m,
             anchor_s=self.anchor_s,

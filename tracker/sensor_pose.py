@@ -66,7 +66,7 @@ class SensorPose:
         self._R_body_cam = rig.T_body_cam[:3, :3]
         self._period_ns = round(settings.cycle_s * 1e9)
         self._calibration = RestCalibration()
-        self._sample_mean = SampleMean()
+        self._sample_mean = SampleMean(settings.mean_samples)
         self._attitude = Madgwick()
         self._heading = StartHeading(declination_rad)
         self.path = InertialPath(gravity_m_s2(origin.lat_deg, origin.h_ellipsoid_m))
@@ -137,7 +137,8 @@ class SensorPose:
         return Outcome.USED if self._due_ns is not None else Outcome.WAITING
 
     def _integrate(self, mean: MeanSample) -> None:
-        (gx, gy, gz), (bx, by, bz) = mean.gyro_rad_s, self._calibration.gyro_offset_rad_s
+        offset_rad_s = self._calibration.gyro_offset_rad_s if self._settings.calibration else (0.0, 0.0, 0.0)
+        (gx, gy, gz), (bx, by, bz) = mean.gyro_rad_s, offset_rad_s
         gyro = (gx - bx, gy - by, gz - bz)
         if self._attitude.wxyz_level_body is None and hypot(*mean.accel_m_s2) < 1.0:
             return  # a rig in free fall has no up
@@ -176,7 +177,7 @@ class SensorPose:
         return self._m_P(t_ns, fix), (vx + more, vy + more, vz + more)
 
     def _m_P(self, t_ns: int, fix: Fix) -> Vector3:
-        """Tr x m_gps + m_imu, in the reading that is asked for."""
+        """Tr x m_gps + m_imu (eq. 8), in the reading that is asked for."""
         reading, literal_imu = self._settings.m_P, self._settings.m_imu == "literal"
         if reading == "keyframe_local" and self._camera.newest is not None and not literal_imu:
             x, y, z = (c + o for c, o in zip(self._chain_m(t_ns), self._anchor.offset_m, strict=True))

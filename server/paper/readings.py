@@ -22,11 +22,18 @@ DATASET, SEED = 4, 1
 #: As `--set` is given them; a reading of m_P is one of Tr, and without a camera there is none. The last two take away what the
 #: paper does not have: the mean of the fixes that the camera's path carries to one place, and north from the camera.
 CHANGES: dict[str, tuple[tuple[str, ...], ...]] = {
-    "gps-imu": ((), ("m_imu=literal",), ("innovation=nis",)),
-    "camera-gps-imu": (
+    "gps-imu": (
         (),
         ("m_imu=literal",),
         ("innovation=nis",),
+        ("innovation=nis", "fuzzy.position_m=[1, 2, 3]", "fuzzy.rotation_rad=[1, 2, 3]"),
+        ("calibration=false",),
+        ("mean_samples=1",),
+    ),
+    "camera-gps-imu": (
+        (),
+        ("m_imu=literal",),
+        ("innovation=nis", "fuzzy.position_m=[1, 2, 3]", "fuzzy.rotation_rad=[1, 2, 3]"),
         ("m_P=literal_enu",),
         ("m_P=literal_ecef",),
         ("m_P=literal_ecef", "m_imu=literal"),
@@ -52,14 +59,14 @@ def reading_rows(dataset: int, seed: int) -> list[Figures]:
 
 def reading_row(seen: Seen, sensors: str, changes: tuple[str, ...]) -> Figures:
     """Return FAMM's figures under some changed settings."""
-    origin = seen.walk.settings.origin
+    origin, settings = seen.walk.settings.origin, choose(changes).paper
     family = PaperFamily(
         sensors,
-        {"famm": SELECTORS["famm"]()},
+        {"famm": SELECTORS["famm"].of(settings.fuzzy)},
         origin=origin,
         rig=seen.walk.rig,
         declination_rad=declination_rad(origin, START_NS),
-        settings=choose(changes).paper,
+        settings=settings,
     )
     template = Run("readings", sensors, START_NS, seen.walk.settings.duration_s, origin, origin)
     run = figures(follow_family(family, seen.measurements, template)[0])

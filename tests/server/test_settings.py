@@ -20,6 +20,7 @@ def test_the_readings_of_the_paper_can_be_chosen_by_the_end_of_their_names() -> 
     paper = choose(["m_P=literal_ecef", "m_imu=literal", "innovation=nis", "sensors.camera_north=false"]).paper
     assert (paper.sensors.m_P, paper.sensors.m_imu, paper.innovation) == ("literal_ecef", "literal", "nis")
     assert not paper.sensors.camera_north
+    assert choose(["fuzzy.position_m=[1, 2, 3]"]).paper.fuzzy.position_m == (1.0, 2.0, 3.0)
     assert choose(["gps_var_m2=[1, 2, 3]"]).paper.sensors.gps_var_m2 == (1.0, 2.0, 3.0)
 
 
@@ -36,6 +37,8 @@ def test_the_readings_of_the_paper_can_be_chosen_by_the_end_of_their_names() -> 
         ("gps_var_m2=[1, 2]", "gps_var_m2 cannot be"),
         ("accel_noise_m_s2=-1", "accel_noise_m_s2 must be"),
         ("cycle_s.x=1", "no setting"),
+        ("fuzzy.position_m=[3, 2, 1]", "expected 0 <= low < medium < high"),
+        ("mean_samples=0", "mean_samples must be"),
     ],
 )
 def test_what_cannot_be_chosen_is_named(pair: str, words: str) -> None:

@@ -39,14 +39,20 @@ def test_it_keeps_a_model_when_the_fuzzy_controller_does_for_low(y_p: float, y_r
     level_p, level_r, _ = fuzzy.rule_fired(y_p, y_r, model)
     following = automaton.next_model(y_p, y_r, model)
     assert (following.i == model.i) == (level_p == "Low")
-    if abs(y_r - 0.1) > 1e-15:  # the degrees' rounding puts the crossing of the rotation's a bit below 0.1
+    if abs(y_r - ROTATION_MEMBERSHIP_RAD.crossovers()[0]) > 1e-15:  # the degrees' rounding
         assert (following.j == model.j) == (level_r == "Low")
 
 
-@given(st.floats(0.0, 2.2), st.floats(0.0, 0.27), st.sampled_from(MOTION_MODELS))
+BELOW_HIGH = (
+    st.floats(0.0, POSITION_MEMBERSHIP_M.crossovers()[1]),
+    st.floats(0.0, ROTATION_MEMBERSHIP_RAD.crossovers()[1]),
+)
+
+
+@given(*BELOW_HIGH, st.sampled_from(MOTION_MODELS))
 def test_only_high_tells_it_from_the_fuzzy_controller(y_p: float, y_r: float, model: MotionModel) -> None:
     """Below the second crossings both choose alike."""
-    if abs(y_r - 0.1) > 1e-15:
+    if abs(y_r - ROTATION_MEMBERSHIP_RAD.crossovers()[0]) > 1e-15:
         assert Automaton().next_model(y_p, y_r, model) == FuzzyController().next_model(y_p, y_r, model)
 
 
@@ -58,7 +64,8 @@ def test_thresholds_are_the_first_crossings() -> None:
 
 def test_what_is_no_number_is_large() -> None:
     assert Automaton().next_model(nan, nan, MotionModel(0, 2)) == MotionModel(1, 1)
-    assert Automaton().next_model(nextafter(1.0, 2.0), 0.1, MotionModel(0, 2)) == MotionModel(1, 2)
+    automaton = Automaton(1.0, 0.1)
+    assert automaton.next_model(nextafter(1.0, 2.0), 0.1, MotionModel(0, 2)) == MotionModel(1, 2)
 
 
 @pytest.mark.parametrize("thresholds", [(0.0, 0.1), (1.0, -0.1), (nan, 0.1)])

@@ -165,7 +165,8 @@ def test_a_controller_is_shared_by_snapshots() -> None:
 
 
 def test_a_tie_keeps_the_model() -> None:
-    assert FuzzyController().next_model(1.0, 0.0, MotionModel(1, 1)) == MotionModel(1, 1)
+    controller = FuzzyController(Membership(0.5, 1.5, 3.0))
+    assert controller.next_model(1.0, 0.0, MotionModel(1, 1)) == MotionModel(1, 1)
 
 
 @pytest.mark.parametrize("breakpoints", [(1.0, 1.0, 2.0), (-0.1, 1.0, 2.0), (0.5, 3.0, 2.0)])

@@ -44,8 +44,9 @@ def _judged(tried: dict[Variant, list[Figures]]) -> list[Figures]:
     return judged(list(tried), [row for rows in tried.values() for row in rows])
 
 
-NEAR = Variant("position", "0.8 m, 2.25 m", position=crossing_at(0.8, 2.25))
-FAR = Variant("position", "0.3 m, 2.25 m", position=crossing_at(0.3, 2.25))
+_LOW_M, _HIGH_M = DEFAULT.position.crossovers()
+NEAR = Variant("position", "near", position=crossing_at(0.9 * _LOW_M, _HIGH_M))
+FAR = Variant("position", "far", position=crossing_at(0.4 * _LOW_M, _HIGH_M))
 RULES = Variant("rules", "low-rests", rules=RuleBase.separable("low-rests", OTHER_RULES["low-rests"]))
 REST = [Variant("rest", f"{s:g}", position=crossing_at(s, 2.25 * s)) for s in (1.5, 2.0, 3.0)]
 
@@ -125,7 +126,8 @@ def test_every_variant_is_filtered(held: list[Figures]) -> None:
     rows = {row["variant"]: row for row in swept(recording, variants())}
     assert len(rows) == len(variants())
     default = rows[DEFAULT.name]
-    usual = next(v.name for v in variants() if v.factor == "position" and v.position == DEFAULT.position)
+    shipped = pytest.approx(DEFAULT.position.crossovers())
+    usual = next(v.name for v in variants() if v.factor == "position" and v.position.crossovers() == shipped)
     assert rows[usual]["famm"] == default["famm"]
     for name in ("position 0.2 m, 0.8 m", "rotation 0.02 rad, 0.275 rad", "rules low-rests", "innovation nis x 0.25"):
         assert rows[name]["famm"] != default["famm"]
