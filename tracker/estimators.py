@@ -8,6 +8,7 @@ import numpy as np
 from tracker.errors import UnknownEstimator
 from tracker.estimator import Estimator, Origin
 from tracker.geodesy import SiteFrame
+from tracker.geomagnetism import MagneticField
 from tracker.motion import (
     AutomatonMotion,
     ConstantMotion,
@@ -72,6 +73,7 @@ def build(
     declination_rad: float,
     truth_origin: Origin | None = None,
     settings: Settings | None = None,
+    earth_field: MagneticField | None = None,
 ) -> Estimator:
     """Return a new estimator.
 
@@ -82,6 +84,7 @@ def build(
         declination_rad: East of true north, for the magnetometer.
         truth_origin: Where the log's map frame is laid; None where it is the site's.
         settings: None for the defaults.
+        earth_field: What a magnetometer should measure there; None where nobody knows, and then every field is believed.
 
     Raises:
         UnknownEstimator: No estimator has that name.
@@ -96,7 +99,7 @@ def build(
             name,
             origin=origin,
             rig=rig,
-            compass=Compass(declination_rad),
+            compass=Compass(declination_rad, earth_field),
             uses_camera=uses_camera,
             settings=settings.precise,
         )

@@ -14,7 +14,7 @@ from tracker.errors import MissingSensor
 from tracker.estimator import Estimator, Innovation, Origin, Pose
 from tracker.estimators import Settings, build, missing_sensors
 from tracker.geodesy import SiteFrame
-from tracker.geomagnetism import declination_rad
+from tracker.geomagnetism import magnetic_field
 from tracker.log import Log
 from tracker.measurements import Frame, GpsFix, ImuSample, Matrix, Measurement, Outcome, TruePose
 from tracker.paper import PaperEstimator
@@ -69,11 +69,13 @@ def make_pipeline(name: str, log: Log, origin: Origin, settings: Settings | None
     missing = missing_sensors(name, log.info, log.rig)
     if missing:
         raise MissingSensor(f"{log.name} cannot run {name}: it has {missing}.")
+    earth = magnetic_field(origin.lat_deg, origin.lon_deg, origin.h_ellipsoid_m, log.info.t_start_ns)
     estimator = build(
         name,
         origin=origin,
         rig=log.rig,
-        declination_rad=declination_rad(origin, log.info.t_start_ns) if log.info.counts["mag"] else 0.0,
+        declination_rad=earth.declination_rad if log.info.counts["mag"] else 0.0,
+        earth_field=earth,
         truth_origin=log.info.truth_origin,
         settings=settings,
     )

@@ -150,4 +150,38 @@ class TruePose:
     """The log's own claim of its horizontal accuracy; 0 where exact."""
 
 
-Measurement: TypeAlias = ImuSample | MagSample | CompassHeading | GpsFix | GpsVelocity | Frame | VisualMotion | TruePose
+@dataclass(frozen=True, slots=True)
+class Sighting:
+    """Somebody has said: this direction is that landmark."""
+
+    t_ns: int
+    """Of the picture that it was pointed out in."""
+    t_recv_ns: int
+    point_site_m: Vector3
+    ray_cam: Vector3
+    """Unit vector towards it, in the camera's axes."""
+    sigma_rad: float
+
+
+@dataclass(frozen=True, slots=True)
+class Standpoint:
+    """Somebody has said: I stand at this surveyed point. Its height is the eyes'."""
+
+    t_ns: int
+    t_recv_ns: int
+    p_site_m: Vector3
+    sigma_m: float
+
+
+Measurement: TypeAlias = (
+    ImuSample
+    | MagSample
+    | CompassHeading
+    | GpsFix
+    | GpsVelocity
+    | Frame
+    | VisualMotion
+    | Sighting
+    | Standpoint
+    | TruePose
+)

@@ -2,6 +2,7 @@
 
 from math import atan2, cos, hypot, pi, sin
 
+from tracker.geomagnetism import MagneticField
 from tracker.geometry import rotate, wrap_rad, yaw_of
 from tracker.measurements import MagSample, Wxyz
 
@@ -14,9 +15,9 @@ MEMORY = 0.05
 class Compass:
     """The turn from the filter's present heading to what the field says, averaged."""
 
-    def __init__(self, declination_rad: float, field_t: float = 0.0, dip_rad: float = 0.0) -> None:
-        """Declination (east), strength and dip (downward) of the Earth's field here; strength 0 where it is not known."""
-        self._field_t, self._dip_rad, self._declination_rad = field_t, dip_rad, declination_rad
+    def __init__(self, declination_rad: float, earth_field: MagneticField | None = None) -> None:
+        """`declination_rad` is used whatever the field; without `earth_field` every field is taken for the Earth's."""
+        self.declination_rad, self._earth = declination_rad, earth_field
         self._cos = self._sin = 0.0
         self._seen = 0
         self.is_trusted = False
@@ -29,10 +30,11 @@ class Compass:
         if flat == 0.0:
             return
         strength, dip = hypot(flat, z), atan2(-z, flat)
-        self.is_trusted = self._field_t == 0.0 or (
-            abs(strength / self._field_t - 1.0) < STRENGTH_SHARE and abs(dip - self._dip_rad) < DIP_RAD
+        earth = self._earth
+        self.is_trusted = earth is None or (
+            abs(strength / earth.strength_t - 1.0) < STRENGTH_SHARE and abs(dip - earth.inclination_rad) < DIP_RAD
         )
-        self.heading(pi / 2 - self._declination_rad - atan2(y, x))
+        self.heading(pi / 2 - self.declination_rad - atan2(y, x))
 
     def heading(self, off_rad: float) -> None:
         """Take a turn that the heading wants."""

@@ -1,6 +1,8 @@
 """The filter fed in the order of measuring: each measurement carries the state on to its stamp and corrects it there."""
 
+from collections.abc import Callable
 from math import hypot, pi, sqrt
+from typing import TypeAlias
 
 import numpy as np
 
@@ -14,6 +16,8 @@ from tracker.measurements import (
     GpsVelocity,
     ImuSample,
     MagSample,
+    Sighting,
+    Standpoint,
     Vector3,
     VisualMotion,
 )
@@ -21,7 +25,7 @@ from tracker.pace import Pace
 from tracker.precise import observations
 from tracker.precise.activity import Activity
 from tracker.precise.compass import Compass
-from tracker.precise.error_state import Correction, ErrorState, start_covariance
+from tracker.precise.error_state import Correction, ErrorState, P, start_covariance
 from tracker.precise.hypotheses import Hypotheses
 from tracker.precise.navigation import Biases, Navigation
 from tracker.precise.settings import PreciseSettings
@@ -37,12 +41,24 @@ _HELD = 2
 _MOVING_M_S = 0.3
 
 
+EyeHeight: TypeAlias = Callable[[float, float], float]
+"""Height of the rig in site, m, above an east and a north, where it stands on the ground."""
+
+
 class Engine:
     """State of the world as of the last measurement taken."""
 
     def __init__(
-        self, settings: PreciseSettings, site: SiteFrame, rig: Rig, compass: Compass, gravity_m_s2: float
+        self,
+        settings: PreciseSettings,
+        site: SiteFrame,
+        rig: Rig,
+        compass: Compass,
+        gravity_m_s2: float,
+        eyes_z_m: EyeHeight | None = None,
     ) -> None:
+        self._eyes_z_m = eyes_z_m
+        self._off_ground = 0
         self._settings = settings
         self._site = site
         self._rig = rig
@@ -64,6 +80,7 @@ class Engine:
         """Of the last fix taken in."""
         self._velocity_ns: int | None = None
         self._refused = 0
+        self._compass_due_ns = 0
         self._suspicion = 0.0
         self.heading_found = False
         self.innovations: list[Innovation] = []
@@ -102,6 +119,13 @@ class Engine:
                 self._compass.heading(wrap_rad(measurement.yaw_rad - yaw_of(self.best.nav.wxyz_site_body)))
             case VisualMotion():
                 self._take_vision(measurement)
+            case Sighting():
+                self._take_sighting(measurement)
+            case Standpoint():
+                noise = measurement.sigma_m**2 * _I3
+                self.hypotheses.correct(
+                    lambda f: f.correct(*observations.position(f, measurement.p_site_m), noise, gated=False)
+                )
             case Keyframe():
                 for filter_ in self.hypotheses.filters:
                     filter_.hold(_HELD)
@@ -160,13 +184,11 @@ class Engine:
                 hypotheses.correct(lambda f: f.correct(*observations.turn_rate(f, activity.gyro_mean_rad_s), noise))
         elif self._is_blind(t_ns):
             expected = self._pace.velocity_m_s((1.0, 0.0)) if self.fix_ns is not None else (0.0, 0.0, 0.0)
-            sigma = 0.6 if self.fix_ns is not None else 1.5
+            sigma = 0.6 if self.fix_ns is not None else 1.0
             hypotheses.correct(lambda f: f.correct(*observations.velocity(f, expected), sigma**2 * _I3, gated=False))
         else:
             self._pace.learn(self.best.nav.v_m_s, (1.0, 0.0))
-        if self.fix_ns is None:
-            # nothing says where the rig is: it stays about here, and attitude is what is estimated
-            hypotheses.correct(lambda f: f.correct(*observations.position(f, (0.0, 0.0, 0.0)), 25.0 * _I3, gated=False))
+        self._stand_on_ground()
 
     def _is_blind(self, t_ns: int) -> bool:
         """Whether the receiver has been silent for longer than its usual second."""
@@ -220,6 +242,36 @@ class Engine:
         if not hypotheses.are_many and float(self.best.covariance[8, 8]) < self._settings.converged_rad**2:
             self.heading_found = True
 
+    # -- what people and the ground say -------------------------------------------------------------------------------
+
+    def _take_sighting(self, seen: Sighting) -> None:
+        assert self.hypotheses is not None
+        x, y, z = (self._R_body_cam @ np.array(seen.ray_cam)).tolist()
+
+        def correction(filter_: ErrorState) -> Correction:
+            # a doubt of metres, seen from so near, bends the line of sight: what a straight line misses of it is noise as well
+            distance_m = float(np.linalg.norm(np.array(seen.point_site_m) - filter_.nav.p_m))
+            bend_rad = float(np.trace(filter_.covariance[P, P])) / (2.0 * distance_m**2)
+            noise = (seen.sigma_rad**2 + bend_rad**2) * np.eye(2)
+            return filter_.correct_far(
+                lambda at: observations.bearing(at, seen.point_site_m, (x, y, z), self._lever_cam_m), noise
+            )
+
+        self.hypotheses.correct(correction)
+
+    def _stand_on_ground(self) -> None:
+        """Take the height of the eyes above the ground, unless the rig is off it: on stairs, or on something."""
+        assert self.hypotheses is not None
+        if self._eyes_z_m is None or self.fix_ns is None:
+            return
+        east, north, up = self.best.nav.p_m
+        eyes_z_m, sigma = self._eyes_z_m(east, north), self._settings.eye_height_sigma_m
+        off = abs(up - eyes_z_m) > 4.0 * sigma + 3.0 * sqrt(float(self.best.covariance[2, 2]))
+        self._off_ground = self._off_ground + 1 if off else 0
+        if not off:
+            noise = np.array([[self._settings.eye_height_repeats * sigma**2]])
+            self.hypotheses.correct(lambda f: f.correct(*observations.height(f, eyes_z_m), noise))
+
     # -- heading ------------------------------------------------------------------------------------------------------
 
     def _find_heading(self) -> None:
@@ -228,10 +280,17 @@ class Engine:
         self.hypotheses.spread(self._settings.hypotheses, self._compass.yaw_rad(self.best.nav.wxyz_site_body))
 
     def _take_magnetometer(self, sample: MagSample) -> None:
+        hypotheses, settings = self.hypotheses, self._settings
+        assert hypotheses is not None
         self._compass.field(sample, self.best.nav.wxyz_site_body)
-        if not self.heading_found or not self._compass.is_trusted:
+        if hypotheses.are_many or not self._compass.is_trusted or sample.t_ns < self._compass_due_ns:
             return
-        assert self.hypotheses is not None
+        self._compass_due_ns = sample.t_ns + round(settings.magnetic_every_s * 1e9)
+        noise = np.array([[settings.magnetic_sigma_rad**2]])
+        declination_rad = self._compass.declination_rad
+        hypotheses.correct(
+            lambda f: f.correct(*observations.magnetic_yaw(f, sample.field_body_t, declination_rad), noise)
+        )
 
     # -- camera -------------------------------------------------------------------------------------------------------
 

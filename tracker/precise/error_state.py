@@ -9,14 +9,16 @@ Reference:
     Roumeliotis and Burdick, Stochastic cloning, 2002.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import log, pi
+from math import hypot, log, pi
+from typing import TypeAlias
 
 import numpy as np
 
 from tracker.geometry import conjugate, matrix_from_wxyz, multiply, normalise
 from tracker.geometry import exp as rotation_exp
+from tracker.geometry import log as log_rotation
 from tracker.measurements import Matrix, Vector3
 from tracker.precise.navigation import Biases, Navigation, advance
 from tracker.precise.settings import PreciseSettings
@@ -31,6 +33,13 @@ _INERTIAL = slice(0, 15)
 _UNKNOWN_M2 = 1e4
 #: Covariance is carried on in steps of about this long: attitude hardly turns within one.
 _CHUNK_S = 0.02
+
+
+Blocks: TypeAlias = Sequence[tuple[slice, Matrix]]
+"""Columns of H that are not zero, each (m, width of the slice)."""
+Observation: TypeAlias = tuple[Matrix, Blocks]
+"""Residual, measured minus predicted, (m,), and its H."""
+_ITERATIONS = 5
 
 
 @dataclass
@@ -103,6 +112,11 @@ class ErrorState:
         cov[15:SIZE, :] *= keep[:, None]
         cov[:, 15:SIZE] *= keep
         cov[_DIAGONAL] += self._noise.added(dt)
+        turned = log_rotation(multiply(end.wxyz_site_body, conjugate(start.wxyz_site_body)))
+        index = np.arange(3)
+        cov[6 + index, 6 + index] += (self.settings.gyro_scale * hypot(*turned)) ** 2
+        shaken = np.array(end.v_m_s) - np.array(start.v_m_s)
+        cov[3 + index, 3 + index] += (self.settings.accel_scale * float(np.linalg.norm(shaken))) ** 2
         half = 0.5 * self._noise.velocity * dt * dt
         cov[_P_V] += half
         cov[_V_P] += half
@@ -115,7 +129,7 @@ class ErrorState:
     def correct(
         self,
         residual: Matrix,
-        blocks: Sequence[tuple[slice, Matrix]],
+        blocks: Blocks,
         noise: Matrix,
         *,
         gated: bool = True,
@@ -130,9 +144,7 @@ class ErrorState:
         """
         self.settle()
         m, cov = len(residual), self.covariance
-        H = np.zeros((m, len(cov)))
-        for columns, block in blocks:
-            H[:, columns] += block
+        H = _dense(blocks, m, len(cov))
         PHt = cov @ H.T
         foreseen = H @ PHt
         nis = float(residual @ np.linalg.solve(foreseen + noise, residual)) / m
@@ -145,9 +157,32 @@ class ErrorState:
         reduced = cov - K @ PHt.T
         reduced = reduced - (reduced @ H.T) @ K.T + K @ noise @ K.T
         self.covariance = 0.5 * (reduced + reduced.T)
-        likelihood = -0.5 * (m * min(nis, self.settings.reject_nis) + log(float(np.linalg.det(S))) + m * log(2.0 * pi))
         self.move(K @ residual)
-        return Correction(nis, likelihood, used=True)
+        return Correction(nis, _log_likelihood(min(nis, self.settings.reject_nis), S), used=True)
+
+    def correct_far(self, observe: Callable[["ErrorState"], Observation], noise: Matrix) -> Correction:
+        """Take in a measurement that may move the state far: its Jacobian is taken again where it leads to.
+
+        Reference:
+            Bell and Cathey, The iterated Kalman filter update as a Gauss-Newton method, 1993.
+        """
+        prior = self.copied()
+        cov, error = prior.covariance, np.zeros(len(self.covariance))
+        for _ in range(_ITERATIONS):
+            at = prior.copied()
+            at.move(error)
+            residual, blocks = observe(at)
+            H = _dense(blocks, len(residual), len(cov))
+            S = H @ cov @ H.T + noise
+            K = np.linalg.solve(S, H @ cov).T
+            error = K @ (residual + H @ error)
+        first, _ = observe(prior)
+        nis = float(first @ np.linalg.solve(S, first)) / len(first)
+        reduced = cov - K @ (H @ cov)
+        reduced = reduced - (reduced @ H.T) @ K.T + K @ noise @ K.T
+        self.covariance = 0.5 * (reduced + reduced.T)
+        self.move(error)
+        return Correction(nis, _log_likelihood(nis, S), used=True)
 
     def move(self, error: Matrix) -> None:
         """Move the nominal state by an error."""
@@ -233,6 +268,18 @@ class ErrorState:
 _DIAGONAL = (np.arange(SIZE), np.arange(SIZE))
 _P_V = (np.arange(3), np.arange(3, 6))
 _V_P = (np.arange(3, 6), np.arange(3))
+
+
+def _dense(blocks: Blocks, rows: int, columns: int) -> Matrix:
+    H = np.zeros((rows, columns))
+    for where, block in blocks:
+        H[:, where] += block
+    return H
+
+
+def _log_likelihood(nis: float, S: Matrix) -> float:
+    m = len(S)
+    return -0.5 * (m * nis + log(float(np.linalg.det(S))) + m * log(2.0 * pi))
 
 
 class _InertialNoise:

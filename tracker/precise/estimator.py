@@ -17,18 +17,20 @@ from tracker.measurements import (
     Matrix,
     Measurement,
     Outcome,
+    Sighting,
+    Standpoint,
     VisualMotion,
 )
 from tracker.precise.blend import Blend
 from tracker.precise.compass import Compass
-from tracker.precise.engine import Engine
+from tracker.precise.engine import Engine, EyeHeight
 from tracker.precise.error_state import ErrorState
 from tracker.precise.navigation import Biases, Navigation, advance, carried
 from tracker.precise.settings import PreciseSettings
 from tracker.precise.timeline import Keyframe, Timeline
 from tracker.rig import Rig
 
-_KINDS = (ImuSample, MagSample, CompassHeading, GpsFix, GpsVelocity, VisualMotion)
+_KINDS = (ImuSample, MagSample, CompassHeading, GpsFix, GpsVelocity, VisualMotion, Sighting, Standpoint)
 #: A stamp that is ahead of its arrival by more than this is a clock that leapt.
 _FASTEST_CLOCK_NS = 2_000_000_000
 #: A prediction goes on with the last rates at most this long, and turns on for the first part of it.
@@ -51,12 +53,14 @@ class PreciseEstimator:
         compass: Compass,
         uses_camera: bool,
         settings: PreciseSettings | None = None,
+        eyes_z_m: EyeHeight | None = None,
     ) -> None:
+        """`eyes_z_m` is how high the rig is in site where it stands on the ground; None where no ground is known."""
         self._name, self._uses_camera = name, uses_camera
         self._settings = settings or PreciseSettings()
         self._gravity = gravity_m_s2(origin.lat_deg, origin.h_ellipsoid_m)
         self._timeline = Timeline()
-        self._engine = Engine(self._settings, SiteFrame(origin), rig, compass, self._gravity)
+        self._engine = Engine(self._settings, SiteFrame(origin), rig, compass, self._gravity, eyes_z_m)
         self._blend = Blend(self._settings.blend_s)
         self._free: list[tuple[Navigation, ImuSample]] = []
         """The strapdown integral that no measurement corrects, and the sample that ended each step."""
@@ -243,4 +247,14 @@ def _refusal(measurement: Measurement) -> Outcome | None:
         case CompassHeading():
             if not isfinite(measurement.yaw_rad):
                 return Outcome.REJECTED_NOT_FINITE
+        case Sighting():
+            if not all(map(isfinite, (*measurement.point_site_m, *measurement.ray_cam, measurement.sigma_rad))):
+                return Outcome.REJECTED_NOT_FINITE
+            if measurement.sigma_rad <= 0.0 or abs(hypot(*measurement.ray_cam) - 1.0) > 1e-3:
+                return Outcome.REJECTED_GATE
+        case Standpoint():
+            if not all(map(isfinite, (*measurement.p_site_m, measurement.sigma_m))):
+                return Outcome.REJECTED_NOT_FINITE
+            if measurement.sigma_m <= 0.0:
+                return Outcome.REJECTED_GATE
     return None

@@ -4,15 +4,12 @@ Every function returns the residual (measured minus predicted, (m,)) and the blo
 """
 
 from math import atan2, hypot
-from typing import TypeAlias
 
 import numpy as np
 
 from tracker.geometry import log, rotate, wrap_rad, wxyz_from_matrix
 from tracker.measurements import Matrix, Vector3
-from tracker.precise.error_state import BG, GPS_ERROR, MAGNETIC, SIZE, THETA, ErrorState, P, V, skew
-
-Observation: TypeAlias = tuple[Matrix, list[tuple[slice, Matrix]]]
+from tracker.precise.error_state import BG, GPS_ERROR, MAGNETIC, SIZE, THETA, ErrorState, Observation, P, V, skew
 
 _I3 = np.eye(3)
 #: Where the body is nearer than this to a held picture, the direction between them is noise.

@@ -16,6 +16,10 @@ class PreciseSettings:
     """White noise density; a few times the sensor's own, for scale and misalignment errors."""
     accel_noise_m_s2_sqrt_hz: float = 8e-3
     """White noise density of the accelerometer."""
+    gyro_scale: float = 0.01
+    """Error of scale and axes, as a share of each turn: what a fast head turn adds to the doubt of attitude."""
+    accel_scale: float = 0.005
+    """Error of scale and axes, as a share of each change of velocity, gravity's included."""
     gyro_bias_walk_rad_s2_sqrt_hz: float = 5e-5
     """How fast the bias wanders."""
     accel_bias_walk_m_s3_sqrt_hz: float = 5e-4
@@ -52,6 +56,14 @@ class PreciseSettings:
     """Iron near the rig and in it turns the compass by this much,"""
     magnetic_deviation_s: float = 60.0
     """and for so long."""
+    magnetic_every_s: float = 0.5
+    """How often a magnetometer is asked, once one heading is left."""
+    magnetic_sigma_rad: float = 0.05
+    """White noise of its direction."""
+    eye_height_sigma_m: float = 0.1
+    """How well the height of the eyes above the ground is known,"""
+    eye_height_repeats: float = 8.0
+    """and how many times it says the same in a quarter of a second each: its error does not average out."""
     vision_rotation_rad: float = 0.006
     """Of a picture against a held one. Those of one held picture share its error: each counts for less than it is worth."""
     vision_direction_rad: float = 0.06

@@ -10,6 +10,8 @@ from tracker.measurements import (
     GpsVelocity,
     ImuSample,
     MagSample,
+    Sighting,
+    Standpoint,
     VisualMotion,
 )
 
@@ -21,7 +23,9 @@ class Keyframe:
     t_ns: int
 
 
-Timed: TypeAlias = ImuSample | MagSample | CompassHeading | GpsFix | GpsVelocity | VisualMotion | Keyframe
+Timed: TypeAlias = (
+    ImuSample | MagSample | CompassHeading | GpsFix | GpsVelocity | VisualMotion | Sighting | Standpoint | Keyframe
+)
 #: Order among measurements of one instant: the inertial sample that ends there comes first.
 _RANK: dict[type, int] = {
     ImuSample: 0,
@@ -30,7 +34,9 @@ _RANK: dict[type, int] = {
     MagSample: 3,
     CompassHeading: 4,
     VisualMotion: 5,
-    Keyframe: 6,
+    Sighting: 6,
+    Standpoint: 7,
+    Keyframe: 8,
 }
 _Key: TypeAlias = tuple[int, int]
 
