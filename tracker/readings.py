@@ -35,6 +35,8 @@ class SensorSettings:
     """A receiver that states less is not believed."""
     anchor_s: float = 10.0
     """How long a fix is remembered where the camera's path carries it on: its white error averages out, its drift does not."""
+    anchor_imu: bool = False
+    """Let the IMU's path carry them where there is no camera (not in the paper; to tell what of a gain is the camera's own)."""
     camera_north: bool = True
     """Correct the start heading by the angle that the camera finds between its travel and the path (not in the paper)."""
     fastest_walk_m_s: float = 2.0

@@ -179,7 +179,8 @@ class SensorPose:
     def _m_P(self, t_ns: int, fix: Fix) -> Vector3:
         """Tr x m_gps + m_imu (eq. 8), in the reading that is asked for."""
         reading, literal_imu = self._settings.m_P, self._settings.m_imu == "literal"
-        if reading == "keyframe_local" and self._camera.newest is not None and not literal_imu:
+        is_carried = self._camera.newest is not None or self._settings.anchor_imu
+        if reading == "keyframe_local" and is_carried and not literal_imu:
             x, y, z = (c + o for c, o in zip(self._chain_m(t_ns), self._anchor.offset_m, strict=True))
             return (x, y, z)
         m_imu_m = self._four_samples.m_imu_m if literal_imu else _difference(self._path_m(t_ns), fix.path_m)

@@ -9,7 +9,7 @@ import cv2
 from server.paper.cases import ROOT, worlds_closed
 
 DOCS = ROOT / "docs" / "paper"
-STEPS = ("study", "sweep", "attitude", "readings", "document")
+STEPS = ("study", "sweep", "attitude", "readings", "ablation", "document")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -55,6 +55,12 @@ def _step(name: str, seeds: int | None, jobs: int) -> Callable[[], None]:
 
         readings(DOCS / "readings.json")
 
+    def ablation() -> None:
+        from server.paper.ablation import ablation
+        from server.paper.study import SEEDS
+
+        ablation(DOCS / "ablation.json", SEEDS[:seeds], jobs)
+
     def document() -> None:
         from server.paper.document import write_document
 
@@ -65,6 +71,7 @@ def _step(name: str, seeds: int | None, jobs: int) -> Callable[[], None]:
         "sweep": sweep,
         "attitude": attitude,
         "readings": readings,
+        "ablation": ablation,
         "document": document,
     }
     return steps[name]

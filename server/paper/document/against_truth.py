@@ -1,6 +1,7 @@
 """What the paper's tables lack: every cell against the truth, with the rivals, the camera's part, and the loop."""
 
 from server.blocks import Block, Grid, Heading, Shown, Text
+from server.paper.document.own_part import own_part
 from server.paper.document.results import SENSORS, STATIONARY, Results, middle
 from server.paper.document.words import listed, percent
 from server.plots.comparison import camera_caption, camera_figure, rivals_caption, rivals_figure
@@ -29,7 +30,7 @@ def against_truth(results: Results) -> list[Block]:
             Heading("What the camera adds", 3),
             Shown(drawn(camera_figure(camera), "camera", camera_caption(camera))),
         ]
-        blocks.append(_camera_grid(results))
+        blocks += [_camera_grid(results), *own_part(results)]
     return [*blocks, *_loop(results), *_still(results)]
 
 

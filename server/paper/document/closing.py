@@ -20,7 +20,7 @@ def discussion(results: Results) -> list[Block]:
         "to rest by standing still. The paper's stationary P0R0 needs a start at rest and innovations that stay Low.",
         "**The camera's translation has no length.** Its direction is worth having where there is parallax, and its rotation is "
         "worth less than the gyroscope's from one keyframe to the next. Applied to every keyframe, it adds the noise that the "
-        "paper saw; used only where the parallax supports it, it takes out the receiver's white error.",
+        "paper saw; used only where the parallax supports it, it adds none, finds north, and knows when nothing moves.",
     ]
     if rows and ate:
         better = sum(row["ratio_median"] < 1.0 for row in ate)

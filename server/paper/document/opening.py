@@ -6,6 +6,7 @@ import numpy as np
 
 from server.blocks import Block, Heading, Items, Text
 from server.paper.document import printed
+from server.paper.document.own_part import left_of_it
 from server.paper.document.results import MOVING, STATIONARY, Results, middle
 from server.paper.document.words import cell_name, count, listed, percent, span
 from tracker.score import FOCAL_PX
@@ -99,6 +100,7 @@ def _camera(results: Results) -> str:
         f"(medians {percent(middle(ate, 'ratio_median') or 1.0)} and {percent(middle(rpe, 'ratio_median') or 1.0)}); worse by "
         f"more than two per cent: {count(worse)} of these {2 * len(ate)} numbers ([[camera]]). The filter error is higher with the "
         f"camera in {count(higher)} of {count(len(error))}; in the paper, in eight of its ten cells."
+        + left_of_it(results)
     )
 
 

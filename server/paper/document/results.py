@@ -22,11 +22,13 @@ class Results:
     sweep: Figures | None = None
     attitude: Figures | None = None
     readings: Figures | None = None
+    ablation: Figures | None = None
 
     @classmethod
     def read(cls, folder: Path) -> "Results":
         """Read what is in a folder."""
-        return cls(*(_read(folder / f"{name}.json") for name in ("study", "sweep", "attitude", "readings")))
+        names = ("study", "sweep", "attitude", "readings", "ablation")
+        return cls(*(_read(folder / f"{name}.json") for name in names))
 
     @property
     def summary(self) -> Figures:

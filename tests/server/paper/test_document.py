@@ -142,6 +142,22 @@ def test_good_and_bad_news_of_the_camera() -> None:
     assert "worse by more than two per cent: eight of these 16 numbers" in worse
 
 
+def test_the_camera_is_held_against_an_equal() -> None:
+    """What the same averaging by the inertial unit leaves of the camera's gain is told in the summary, and tabled."""
+    rows = [
+        {**_row(dataset, seed, "gps-imu", model, ate=1.875, rpe=1.6), "seed": seed}
+        for dataset in (1, 2, 4, 5)
+        for seed in (1, 2, 3)
+        for model in ("cmm", "famm")
+    ]
+    results = Results(_study(camera_ate=1.8), ablation={"rows": rows})
+    assert "Of this −4.0 % and −37.5 % are the camera's own" in _summary_of(results)
+    (grid,) = (b for b in compose(results, {}).blocks if isinstance(b, Grid) and b.name == "camera-own")
+    assert len(grid.rows) == 8
+    assert grid.rows[0][2:4] == ("0.960", "0.625")
+    assert "the camera's own" not in _summary_of(Results(_study(camera_ate=1.8)))
+
+
 def test_what_a_visitor_sees() -> None:
     """110.85 px at a focal length of 1108.5 px are a tenth of the distance: 2 m at 20 m."""
     text = _summary_of(Results(_study()))

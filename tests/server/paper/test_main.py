@@ -22,7 +22,7 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, int | None, int]]:
 def test_all_steps_in_order(ran: list[tuple[str, int | None, int]]) -> None:
     """The document comes last: it reads what the others write."""
     command.main(["--jobs", "3"])
-    assert ran == [(name, None, 3) for name in ("study", "sweep", "attitude", "readings", "document")]
+    assert ran == [(name, None, 3) for name in ("study", "sweep", "attitude", "readings", "ablation", "document")]
 
 
 def test_one_step_with_few_seeds(ran: list[tuple[str, int | None, int]]) -> None:
