@@ -11,7 +11,7 @@ from server.push import RigLink, frame_message, pose_message
 from tracker.blank import CAMERA, BlankCamera
 from tracker.errors import InputError, MalformedInput
 from tracker.estimator import Origin, Pose
-from tracker.estimators import ESTIMATORS, missing_sensors
+from tracker.estimators import DEFAULT_ESTIMATOR, ESTIMATORS, missing_sensors
 from tracker.evaluate import make_pipeline
 from tracker.geodesy import SiteFrame
 from tracker.geometry import transform
@@ -25,7 +25,7 @@ from tracker.runner import Player, PlayerState, ReadAhead, VisionThread
 from tracker.upright import Upright
 
 #: The best first: what plays when nothing was chosen.
-PREFERENCE = ("camera-gps-imu/famm", "gps-imu/famm", "truth")
+PREFERENCE = (DEFAULT_ESTIMATOR, "gps-imu/precise", "truth")
 #: A walk that begins further than this from the site was recorded elsewhere.
 FAR_M = 3_000.0
 #: Where a camera's intrinsics are unknown: a usual webcam, 60 degrees wide.
@@ -92,8 +92,10 @@ class Replay:
         return Origin(fix.lat_deg, fix.lon_deg, fix.h_ellipsoid_m - self._eye_height_m)
 
     def _best(self) -> str:
-        missing = {name: missing_sensors(name, self._log.info, self._log.rig) for name in PREFERENCE}
-        return next((name for name in PREFERENCE if missing[name] is None), PREFERENCE[1])
+        """What nobody can place on the square plays as its truth, or not at all: the last name then says what is missing."""
+        info, rig = self._log.info, self._log.rig
+        placed = [name for name in PREFERENCE if name == "truth" or info.counts["gps"] > 0]
+        return next((name for name in placed if missing_sensors(name, info, rig) is None), "gps-imu/famm")
 
     def _make_pipeline(self, name: str) -> Pipeline:
         pipeline = make_pipeline(name, self._log, self._origin)

@@ -40,7 +40,7 @@ ESTIMATORS: tuple[str, ...] = (
     *(f"{sensors}/{selector}" for sensors in SENSORS for selector in (*SELECTORS, PRECISE)),
     "truth",
 )
-DEFAULT_ESTIMATOR = "camera-gps-imu/famm"
+DEFAULT_ESTIMATOR = "camera-gps-imu/precise"
 
 
 @dataclass(frozen=True)

@@ -123,7 +123,7 @@ def test_every_frame_carries_the_pose_of_its_own_picture(wall: Path, tmp_path: P
 def test_a_viewer_pauses_seeks_and_changes_the_estimator(wall: Path, tmp_path: Path) -> None:
     with watching(wall, ReplaySettings(), tmp_path) as watcher:
         first = watcher.frame_where(lambda meta: meta.pose_valid)
-        assert first.estimator == "camera-gps-imu/famm"
+        assert first.estimator == "camera-gps-imu/precise"
         assert watcher.ask("pause")["ok"]
         assert watcher.session["playback"]["playing"] is False
         reply = watcher.ask("seek", 6.0)
@@ -162,7 +162,7 @@ def test_a_request_that_makes_no_sense_gets_a_sentence_and_changes_nothing(
         assert not reply["ok"]
         assert word in reply["error"]
         after = watcher.frame_where(lambda meta: meta.pose_valid)
-        assert after.estimator == "gps-imu/famm"
+        assert after.estimator == "gps-imu/precise"
         assert watcher.session["playback"]["speed"] == 1.0
 
 

@@ -304,7 +304,10 @@ class Engine:
         index = _index_of(filter_, motion.t_key_ns)
         if index is None:
             return None
-        noise = self._settings.vision_rotation_rad**2 * _I3
+        settings, parallax_px = self._settings, motion.parallax_px
+        doubt = settings.vision_mixed * parallax_px / (1.0 + (parallax_px / 2.0) ** 2)
+        sigma = settings.vision_rotation_rad * (1.0 + doubt)
+        noise = sigma**2 * _I3
         return filter_.correct(
             *observations.rotation_to_clone(filter_, index, motion.R_key_cam, self._R_body_cam), noise
         )
@@ -318,7 +321,8 @@ class Engine:
         )
         if seen is None:
             return None
-        sigma = max(self._settings.vision_direction_rad, self._settings.vision_point_px / max(motion.parallax_px, 0.1))
+        settings = self._settings
+        sigma = max(settings.vision_direction_rad, (settings.vision_point_px / max(motion.parallax_px, 0.1)) ** 2)
         return filter_.correct(*seen, sigma**2 * np.eye(2))
 
 

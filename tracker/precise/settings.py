@@ -64,12 +64,15 @@ class PreciseSettings:
     """How well the height of the eyes above the ground is known,"""
     eye_height_repeats: float = 8.0
     """and how many times it says the same in a quarter of a second each: its error does not average out."""
-    vision_rotation_rad: float = 0.006
+    vision_rotation_rad: float = 0.004
     """Of a picture against a held one. Those of one held picture share its error: each counts for less than it is worth."""
+    vision_mixed: float = 6.0
+    """How much worse it is, per pixel, where a parallax of about two pixels leaves open what is turn and what is travel: beside
+    a wall a share of the travel is taken for a turn, always the same way."""
     vision_direction_rad: float = 0.06
     """Of a direction of travel, at best;"""
-    vision_point_px: float = 1.5
-    """and this, by the parallax in pixels, where that is worse."""
+    vision_point_px: float = 6.0
+    """and the square of this, by the parallax in pixels, where that is worse."""
     blend_s: float = 0.8
     """A correction moves what is shown with this time constant: a temple that jumps is worse than one that is off."""
     hypotheses: int = 8
