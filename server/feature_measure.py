@@ -1,11 +1,13 @@
 """How near the feature camera is to drawn pictures: both on one simulated walk, side by side.
 
-    python -m server.feature_measure DATASET SEED LOG
+    python -m server.feature_measure DATASET SEED LOG [--json FILE]
 
-LOG is that walk with its pictures: `agora simulate LOG --dataset DATASET --seed SEED --camera`.
+LOG is that walk with its pictures: `agora simulate LOG --dataset DATASET --seed SEED --camera`, which takes up to half an hour; so
+docs/paper/feature.json, which docs/paper.md tabulates, is written by hand: one call for each walk.
 """
 
-import sys
+import argparse
+import json
 from collections.abc import Iterable
 from heapq import merge
 from itertools import pairwise
@@ -19,6 +21,7 @@ from rich.table import Table
 from assets.site import Site, load_site
 from server.feature_world import dataset_walk, world_of
 from server.motions import feature_motions, poses_of, rendered_motions
+from server.paper.digits import write_figures
 from tracker.errors import InputError
 from tracker.evaluate import Run, figures, follow, log_origin, make_pipeline
 from tracker.log import Log
@@ -127,10 +130,28 @@ def _median(values: list[float]) -> float:
     return float(np.median(values)) if values else float("nan")
 
 
+def keep(path: Path, dataset: int, seed: int, rendered: Row, featured: Row) -> None:
+    """Write a walk's two columns into a file, in the place of what it held of that walk."""
+    held = json.loads(path.read_text(encoding="utf-8"))["walks"] if path.is_file() else []
+    walks = [walk for walk in held if (walk["dataset"], walk["seed"]) != (dataset, seed)]
+    walks.append({"dataset": dataset, "seed": seed, "drawn": rendered, "features": featured})
+    write_figures(path, {"walks": sorted(walks, key=lambda walk: (walk["dataset"], walk["seed"]))})
+
+
 def main() -> None:
-    """Print the table."""
-    dataset, seed, path = int(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3])
-    print_table(*compare(load_site(SITE), Log.open(path), dataset, seed), Console())
+    """Print the table, and keep it where that is asked for."""
+    parser = argparse.ArgumentParser("python -m server.feature_measure", description=__doc__.partition("\n")[0])
+    parser.add_argument("dataset", type=int)
+    parser.add_argument("seed", type=int)
+    parser.add_argument("log", type=Path, help="that walk with its pictures")
+    parser.add_argument(
+        "--json", type=Path, metavar="FILE", help="keep the figures in this file, beside those of other walks"
+    )
+    asked = parser.parse_args()
+    rendered, featured = compare(load_site(SITE), Log.open(asked.log), asked.dataset, asked.seed)
+    print_table(rendered, featured, Console())
+    if asked.json is not None:
+        keep(asked.json, asked.dataset, asked.seed, rendered, featured)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """What the comparison of features with drawn pictures measures, on motions whose errors are known."""
 
+import json
 from dataclasses import replace
 from heapq import merge
 from io import StringIO
@@ -10,7 +11,7 @@ import pytest
 from rich.console import Console
 
 from assets.site import load_site
-from server.feature_measure import compare, filter_figures, print_table, vision_figures
+from server.feature_measure import compare, filter_figures, keep, print_table, vision_figures
 from server.motions import poses_of
 from tests.assets.conftest import SITE
 from tracker.errors import InputError
@@ -106,3 +107,16 @@ def test_the_table_has_both_and_their_ratio() -> None:
     text = console.file.getvalue() if isinstance(console.file, StringIO) else ""
     assert "1.100" in text
     assert "nan" in text
+
+
+def test_figures_are_kept_walk_by_walk(tmp_path: Path) -> None:
+    """A walk measured again takes its own place, and others stay."""
+    path = tmp_path / "feature.json"
+    keep(path, 4, 1, {"a": 1.0}, {"a": 2.0})
+    keep(path, 3, 1, {"a": 3.0}, {"a": 4.0})
+    keep(path, 4, 1, {"a": 5.0}, {"a": 6.0})
+    walks = json.loads(path.read_text(encoding="utf-8"))["walks"]
+    assert [(walk["dataset"], walk["drawn"]["a"], walk["features"]["a"]) for walk in walks] == [
+        (3, 3.0, 4.0),
+        (4, 5.0, 6.0),
+    ]

@@ -21,7 +21,7 @@ _WALKS = {
 
 def method(results: Results) -> list[Block]:
     """Return the section on method."""
-    return [Heading("Method"), *_walks(results), *_readings(results), *_parts()]
+    return [Heading("Method"), *_walks(results), *_agreement(results), *_readings(results), *_parts()]
 
 
 def _walks(results: Results) -> list[Block]:
@@ -54,6 +54,25 @@ def _walks(results: Results) -> list[Block]:
             "without any alignment, from 20 s into each walk on."
         ),
     ]
+
+
+def _agreement(results: Results) -> list[Block]:
+    """Return how near the feature camera is to drawn pictures; empty where that was not measured."""
+    walks = results.feature["walks"] if results.feature else []
+    names = [f"camera-gps-imu/{model}: {what}" for what in ("filter error m", "ATE m") for model in ("cmm", "famm")]
+    rows = [
+        (str(walk["dataset"]), str(walk["seed"]), *(number(walk["features"][n] / walk["drawn"][n], 3) for n in names))
+        for walk in walks
+    ]
+    if not rows:
+        return []
+    worst = max(abs(walk["features"][n] / walk["drawn"][n] - 1.0) for walk in walks for n in names)
+    caption = (
+        f"The feature camera beside rendered pictures, as ratios of what the filter makes of both; they differ by "
+        f"{100.0 * worst:.1f} % at most. `python -m server.feature_measure` compares them on any rendered walk."
+    )
+    head = ("dataset", "seed", "filter error, CMM", "filter error, FAMM", "ATE, CMM", "ATE, FAMM")
+    return [Grid("feature", caption, head, tuple(rows), left=1)]
 
 
 _WALK_HEAD = ("dataset", "walk", "updates", "seconds")

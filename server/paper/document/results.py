@@ -23,11 +23,12 @@ class Results:
     attitude: Figures | None = None
     readings: Figures | None = None
     ablation: Figures | None = None
+    feature: Figures | None = None
 
     @classmethod
     def read(cls, folder: Path) -> "Results":
         """Read what is in a folder."""
-        names = ("study", "sweep", "attitude", "readings", "ablation")
+        names = ("study", "sweep", "attitude", "readings", "ablation", "feature")
         return cls(*(_read(folder / f"{name}.json") for name in names))
 
     @property

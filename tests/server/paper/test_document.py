@@ -158,6 +158,15 @@ def test_the_camera_is_held_against_an_equal() -> None:
     assert "the camera's own" not in _summary_of(Results(_study(camera_ate=1.8)))
 
 
+def test_the_feature_camera_is_tabled_beside_rendered_pictures() -> None:
+    names = [f"camera-gps-imu/{model}: {what}" for what in ("filter error m", "ATE m") for model in ("cmm", "famm")]
+    walk = {"dataset": 4, "seed": 1, "drawn": dict.fromkeys(names, 2.0), "features": dict.fromkeys(names, 2.1)}
+    document = compose(Results(_study(), feature={"walks": [walk]}), {})
+    (grid,) = (b for b in document.blocks if isinstance(b, Grid) and b.name == "feature")
+    assert grid.rows == (("4", "1", "1.050", "1.050", "1.050", "1.050"),)
+    assert "5.0 % at most" in grid.caption
+
+
 def test_what_a_visitor_sees() -> None:
     """110.85 px at a focal length of 1108.5 px are a tenth of the distance: 2 m at 20 m."""
     text = _summary_of(Results(_study()))
