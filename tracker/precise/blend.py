@@ -8,7 +8,7 @@ from tracker.measurements import Vector3
 from tracker.precise.navigation import Navigation
 
 #: Corrections larger than these are shown at once: the filter has begun anew, and a long slide would be a second error.
-_LARGEST_M, _LARGEST_RAD = 2.0, 0.15
+_LARGEST_M, _LARGEST_RAD = 10.0, 0.15
 _ZERO: Vector3 = (0.0, 0.0, 0.0)
 
 
@@ -28,8 +28,8 @@ class Blend:
         turn = _sum(
             _scaled(self._turn_rad, keep), log(multiply(before.wxyz_site_body, conjugate(after.wxyz_site_body)))
         )
-        if hypot(*p) > _LARGEST_M or hypot(*turn) > _LARGEST_RAD:
-            p, turn = _ZERO, _ZERO
+        p = p if hypot(*p) <= _LARGEST_M else _ZERO
+        turn = turn if hypot(*turn) <= _LARGEST_RAD else _ZERO
         self._t_ns, self._p_m, self._turn_rad = after.t_ns, p, turn
 
     def shown(self, nav: Navigation) -> Navigation:

@@ -213,6 +213,7 @@ class Engine:
             lambda f: f.correct(*observations.gps_position(f, p, sigma, self._lever_gps_m), noise)
         )
         self.fix_ns = fix.t_ns
+        self._judge_heading()
         if done is None or done.used:
             self._refused = 0
             return
@@ -239,7 +240,11 @@ class Engine:
             self._suspicion += 0.1 * (min(done.nis, 30.0) - self._suspicion)
             if self._suspicion > 8.0:
                 self._find_heading()
-        if not hypotheses.are_many and float(self.best.covariance[8, 8]) < self._settings.converged_rad**2:
+        self._judge_heading()
+
+    def _judge_heading(self) -> None:
+        assert self.hypotheses is not None
+        if not self.hypotheses.are_many and float(self.best.covariance[8, 8]) < self._settings.converged_rad**2:
             self.heading_found = True
 
     # -- what people and the ground say -------------------------------------------------------------------------------

@@ -16,6 +16,8 @@ from tracker.precise.navigation import Navigation
 
 #: A hypothesis this much less likely than the best one is dropped (natural logarithm).
 HOPELESS = 12.0
+#: The best one stays the best until another is more likely by this: what is shown does not waver between equals.
+CHANGE_OF_MIND = 2.0
 #: Two that have come so near to each other are one, rad.
 ALIKE_RAD = 0.12
 #: A compass is right with this probability; the rest is shared by all directions.
@@ -69,7 +71,9 @@ class Hypotheses:
             weighed = [(f, w + (c.log_likelihood if c is not None else 0.0)) for f, w, c in done]
             weighed.sort(key=lambda pair: -pair[1])
             highest = weighed[0][1]
+            shown = self._all[0][0]
             self._all = [(f, w - highest) for f, w in weighed if highest - w < HOPELESS]
+            self._all.sort(key=lambda pair: pair[0] is not shown or pair[1] < -CHANGE_OF_MIND)
             self._merge()
         return result
 
