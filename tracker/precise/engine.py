@@ -25,8 +25,9 @@ from tracker.pace import Pace
 from tracker.precise import observations
 from tracker.precise.activity import Activity
 from tracker.precise.compass import Compass
-from tracker.precise.error_state import Correction, ErrorState, P, start_covariance
+from tracker.precise.error_state import Correction, ErrorState, start_covariance
 from tracker.precise.hypotheses import Hypotheses
+from tracker.precise.landmarks import Landmarks
 from tracker.precise.navigation import Biases, Navigation
 from tracker.precise.settings import PreciseSettings
 from tracker.precise.timeline import Keyframe, Timed
@@ -67,6 +68,7 @@ class Engine:
         self._lever_cam_m: Vector3 = (x, y, z)
         x, y, z = rig.T_body_gps[:3, 3].tolist()
         self._lever_gps_m: Vector3 = (x, y, z)
+        self._landmarks = Landmarks(self._lever_cam_m)
         self._gravity = gravity_m_s2
         self._compass = compass
         self._activity = Activity()
@@ -137,8 +139,10 @@ class Engine:
             return
         self._last = sample
         gyro, accel = _mean(last.gyro_rad_s, sample.gyro_rad_s), _mean(last.accel_m_s2, sample.accel_m_s2)
+        before = self.best.nav
         for filter_ in self.hypotheses.filters:
             filter_.advance(sample.t_ns, gyro, accel)
+        self._landmarks.moved(before, self.best.nav)
         if counted:
             self._pace.step(accel, self.best.nav.wxyz_site_body, (sample.t_ns - last.t_ns) * 1e-9)
             if self._activity.step(sample):
@@ -252,17 +256,8 @@ class Engine:
     def _take_sighting(self, seen: Sighting) -> None:
         assert self.hypotheses is not None
         x, y, z = (self._R_body_cam @ np.array(seen.ray_cam)).tolist()
-
-        def correction(filter_: ErrorState) -> Correction:
-            # a doubt of metres, seen from so near, bends the line of sight: what a straight line misses of it is noise as well
-            distance_m = float(np.linalg.norm(np.array(seen.point_site_m) - filter_.nav.p_m))
-            bend_rad = float(np.trace(filter_.covariance[P, P])) / (2.0 * distance_m**2)
-            noise = (seen.sigma_rad**2 + bend_rad**2) * np.eye(2)
-            return filter_.correct_far(
-                lambda at: observations.bearing(at, seen.point_site_m, (x, y, z), self._lever_cam_m), noise
-            )
-
-        self.hypotheses.correct(correction)
+        for one in self._landmarks.see(seen, (x, y, z)):
+            self.hypotheses.correct(lambda f, one=one: self._landmarks.correct(f, one))  # type: ignore[misc]
 
     def _stand_on_ground(self) -> None:
         """Take the height of the eyes above the ground, unless the rig is off it: on stairs, or on something."""

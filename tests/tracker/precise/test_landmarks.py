@@ -1,0 +1,79 @@
+"""Landmarks: one alone says little where the place is open; looked at again from elsewhere, it says the same."""
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from tracker.geometry import matrix_from_wxyz, wxyz_from_yaw
+from tracker.measurements import Sighting, Vector3
+from tracker.precise.error_state import ErrorState, P, start_covariance
+from tracker.precise.landmarks import DISCOUNTED, Landmarks
+from tracker.precise.navigation import Biases, Navigation
+from tracker.precise.settings import PreciseSettings
+
+SETTINGS = PreciseSettings()
+LEVER: Vector3 = (0.1, 0.0, 0.0)
+S = 1_000_000_000
+
+
+def _state(nav: Navigation, sigma_m: float) -> ErrorState:
+    return ErrorState(SETTINGS, nav, Biases(), start_covariance(SETTINGS, (sigma_m,) * 3, 0.1, 0.1), 9.8)
+
+
+def _sighting(nav: Navigation, point: Vector3) -> tuple[Sighting, Vector3]:
+    R = matrix_from_wxyz(nav.wxyz_site_body)
+    to = R.T @ (np.array(point) - nav.p_m - R @ np.array(LEVER))
+    x, y, z = (to / np.linalg.norm(to)).tolist()
+    return Sighting(nav.t_ns, nav.t_ns, point, (x, y, z), 0.003), (x, y, z)
+
+
+HERE = Navigation(0, (1.0, 2.0, 1.6), (0.0, 0.0, 0.0), wxyz_from_yaw(0.3))
+THERE = Navigation(S, (2.0, 1.0, 1.6), (0.0, 0.0, 0.0), wxyz_from_yaw(0.3 + pi / 2))
+
+
+def test_a_sighting_that_agrees_moves_nothing_wherever_it_is_looked_at_from() -> None:
+    landmarks = Landmarks(LEVER)
+    (first, *again) = landmarks.see(*_sighting(HERE, (12.0, 4.0, 3.0)))
+    assert again == []
+    state = _state(HERE, 2.0)
+    landmarks.correct(state, first)
+    assert state.nav.p_m == pytest.approx(HERE.p_m, abs=1e-9)
+    landmarks.moved(HERE, THERE)
+    later = _state(THERE, 2.0)
+    landmarks.correct(later, first)
+    assert later.nav.p_m == pytest.approx(THERE.p_m, abs=1e-9)
+
+
+def test_doubt_of_metres_discounts_and_a_known_place_does_not() -> None:
+    landmarks = Landmarks(LEVER)
+    first = landmarks.see(*_sighting(HERE, (12.0, 4.0, 3.0)))[0]
+    landmarks.correct(_state(HERE, 2.0), first)
+    assert first.discount > DISCOUNTED
+    second = Navigation(S, HERE.p_m, HERE.v_m_s, HERE.wxyz_site_body)
+    assert first in landmarks.see(*_sighting(second, (3.0, 14.0, 3.0)))
+    landmarks.correct(_state(HERE, 0.1), first)
+    assert first.discount == pytest.approx(1.0, abs=0.01)
+    third = Navigation(2 * S, HERE.p_m, HERE.v_m_s, HERE.wxyz_site_body)
+    assert first not in landmarks.see(*_sighting(third, (3.0, 14.0, 3.0)))
+
+
+def test_three_directions_tell_the_place() -> None:
+    """From three metres off, to decimetres; the covariance admits what is left."""
+    landmarks = Landmarks(LEVER)
+    state = _state(HERE._replace(p_m=(3.0, -0.5, 1.2)), 2.5)
+    for index, point in enumerate([(12.0, 4.0, 3.0), (3.0, 14.0, 3.0), (-9.0, -6.0, 4.0)]):
+        at = HERE._replace(t_ns=index * S)
+        for one in landmarks.see(*_sighting(at, point)):
+            landmarks.correct(state, one)
+    off_m = np.array(state.nav.p_m) - HERE.p_m
+    assert np.linalg.norm(off_m) < 0.3
+    assert off_m @ np.linalg.solve(state.covariance[P, P], off_m) < 12.0
+
+
+def test_what_was_seen_a_minute_ago_is_forgotten() -> None:
+    landmarks = Landmarks(LEVER)
+    first = landmarks.see(*_sighting(HERE, (12.0, 4.0, 3.0)))[0]
+    first.discount = 9.0
+    later = HERE._replace(t_ns=61 * S)
+    assert first not in landmarks.see(*_sighting(later, (12.0, 4.0, 3.0)))
