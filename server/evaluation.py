@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from server.settings import changes
+from server.tables import lookup
 from tracker.errors import InputError, MissingSensor
 from tracker.estimators import ESTIMATORS, Settings, check_name, missing_sensors
 from tracker.evaluate import Run, figures, run
@@ -160,10 +161,5 @@ def _print_skipped(log: str, skipped: dict[str, int], console: Console) -> None:
 
 
 def _cells(row: Figures) -> list[str]:
-    cells = []
-    for column in _COLUMNS:
-        value: Any = row
-        for key in column.path:
-            value = value.get(key) if value is not None else None
-        cells.append("-" if value is None else column.form.format(value * column.scale))
-    return cells
+    values = ((column, lookup(row, *column.path)) for column in _COLUMNS)
+    return ["-" if value is None else column.form.format(value * column.scale) for column, value in values]

@@ -1,6 +1,6 @@
 """Tables of a report from the rows of an evaluation (`tracker.evaluate.figures`): the paper's layout, and what it lacks."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +17,7 @@ def number(value: float | None, decimals: int) -> str:
     return DASH if value is None else f"{value:.{decimals}f}"
 
 
-def lookup(row: Figures, *keys: str) -> Any:
+def lookup(row: Mapping[str, Any], *keys: str) -> Any:
     """Return what lies at the end of some keys; None where they end nowhere."""
     value: Any = row
     for key in keys:

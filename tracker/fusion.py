@@ -20,8 +20,8 @@ class FusionSettings:
     """Noise of the filter. The paper gives none; these are our defaults."""
 
     accel_noise_m_s2: float = 3.0
-    """Process noise of V: white acceleration (discrete white-noise acceleration model). Footfalls and tight turns are as large;
-    0.5 keeps the filter's own error smaller and lags behind every corner: measured, 8 to 12 % more error against truth."""
+    """Process noise of V: white acceleration (discrete white-noise acceleration model). Footfalls and tight turns are as large.
+    The sweep keeps it (docs/paper.md, "Sensitivity"): with less both errors grow, with 4.5 and more FAMM loses cells to CMM."""
     angular_accel_noise_rad_s2: float = 1.0
     """Process noise of Omega: white angular acceleration."""
     rotation_sigma_rad: float = 0.0044

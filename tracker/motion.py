@@ -113,13 +113,15 @@ class FuzzyMotion:
     filter_kind: type[MotionFilter] = FusionFilter
     first = AT_REST
 
+    controller_kind: type[FuzzyController] = FuzzyController
+
     def __init__(self, controller: FuzzyController | None = None) -> None:
-        self._controller = controller or FuzzyController()
+        self._controller = controller or self.controller_kind()
 
     @classmethod
     def of(cls, settings: FuzzySettings) -> "FuzzyMotion":
         """Return one with these breakpoints."""
-        return cls(FuzzyController(Membership(*settings.position_m), Membership(*settings.rotation_rad)))
+        return cls(cls.controller_kind(Membership(*settings.position_m), Membership(*settings.rotation_rad)))
 
     def following(self, y_p_m: float, y_r_rad: float, filter_: MotionFilter, model: MotionModel) -> MotionModel:
         """Return the consequent of the strongest rule."""
@@ -129,13 +131,7 @@ class FuzzyMotion:
 class ReducedMotion(FuzzyMotion):
     """FAMM with the paper's rule base reduced to nine rules, used twice."""
 
-    def __init__(self, controller: ReducedController | None = None) -> None:
-        super().__init__(controller or ReducedController())
-
-    @classmethod
-    def of(cls, settings: FuzzySettings) -> "ReducedMotion":
-        """Return one with these breakpoints."""
-        return cls(ReducedController(Membership(*settings.position_m), Membership(*settings.rotation_rad)))
+    controller_kind = ReducedController
 
 
 class AutomatonMotion:

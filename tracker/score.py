@@ -85,12 +85,16 @@ def true_track(
     f = ((t_ns - times[before]) / np.maximum(gap_ns, 1))[:, None]
     known = (f[:, 0] >= 0.0) & (f[:, 0] <= 1.0) & (gap_ns <= LONGEST_GAP_S * 1e9)
     p = p_map[before] + f * (p_map[after] - p_map[before])
-    # between neighbours a fraction of a degree apart, the normalised chord is the arc
-    sign = np.sign(np.sum(q_map[before] * q_map[after], axis=1, keepdims=True))
-    q = q_map[before] + f * (sign * q_map[after] - q_map[before])
-    q /= np.linalg.norm(q, axis=1, keepdims=True)
+    q = between(q_map[before], q_map[after], f)
     p_site = p @ T_site_map[:3, :3].T + T_site_map[:3, 3]
     return Track(t_ns, p_site, q, np.zeros((len(t_ns), 6, 6))), known
+
+
+def between(before: Vector, after: Vector, share: Vector) -> Vector:
+    """Return (n, 4) quaternions a share, (n, 1), of the way between neighbours so close that the chord is the arc."""
+    sign = np.where(np.sum(before * after, axis=1, keepdims=True) < 0.0, -1.0, 1.0)
+    q = before + share * (sign * after - before)
+    return np.asarray(q / np.linalg.norm(q, axis=1, keepdims=True))
 
 
 def known_parts(poses: Sequence[TruePose]) -> Known:
@@ -108,7 +112,7 @@ def truth_figures(estimate: Track, truth: Track, known: Known) -> Figures | None
     if not known.position or len(estimate.t_ns) == 0:
         return None
     error = estimate.p_m - truth.p_m
-    turn = _multiply(estimate.wxyz, truth.wxyz * np.array([1.0, -1.0, -1.0, -1.0]))
+    turn = products(estimate.wxyz, truth.wxyz * np.array([1.0, -1.0, -1.0, -1.0]))
     turn *= np.where(turn[:, :1] < 0.0, -1.0, 1.0)
     heading = 2.0 * np.arctan2(turn[:, 3], turn[:, 0])
     tilt = 2.0 * np.arccos(np.clip(np.hypot(turn[:, 0], turn[:, 3]), 0.0, 1.0))
@@ -198,7 +202,8 @@ def _jitter(error: Vector, segments: list[slice]) -> float | None:
     return float(np.sqrt(squares / count)) if count else None
 
 
-def _multiply(a: Vector, b: Vector) -> Vector:
+def products(a: Vector, b: Vector) -> Vector:
+    """Return the (n, 4) quaternion products of two (n, 4) rows of quaternions, wxyz."""
     aw, ax, ay, az = a.T
     bw, bx, by, bz = b.T
     return np.stack(

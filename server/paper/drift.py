@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tracker.attitude import Madgwick
 from tracker.calibration import MEAN_SAMPLES, REST_BLOCK_S, RestCalibration, SampleMean, at_rest
 from tracker.measurements import ImuSample, Matrix, Vector3
-from tracker.score import Figures
+from tracker.score import Figures, between, products
 
 #: Standard gravity, in which the paper's table of offsets gives accelerations.
 G_M_S2 = 9.80665
@@ -153,7 +153,7 @@ def error_figures(attitudes: Attitudes, t_true_ns: NDArray[np.int64], wxyz_true:
     rows = np.searchsorted(attitudes.t_ns, t_true_ns).clip(1, len(attitudes.t_ns) - 1)
     inside = (t_true_ns >= attitudes.t_ns[0]) & (t_true_ns <= attitudes.t_ns[-1])
     estimate = _between(attitudes, rows, t_true_ns)[inside]
-    turn = _multiply(estimate, wxyz_true[inside] * np.array([1.0, -1.0, -1.0, -1.0]))
+    turn = products(estimate, wxyz_true[inside] * np.array([1.0, -1.0, -1.0, -1.0]))
     heading = 2.0 * np.arctan2(turn[:, 3], turn[:, 0])
     start = t_true_ns[inside] - t_true_ns[inside][0] < MEAN_S * 1e9
     at_start = np.angle(np.mean(np.exp(1j * heading[start])))
@@ -191,23 +191,7 @@ def _between(attitudes: Attitudes, rows: NDArray[np.intp], t_ns: NDArray[np.int6
     before, after = attitudes.wxyz[rows - 1], attitudes.wxyz[rows]
     gap = np.maximum(attitudes.t_ns[rows] - attitudes.t_ns[rows - 1], 1)
     share = ((t_ns - attitudes.t_ns[rows - 1]) / gap)[:, None]
-    after = after * np.where(np.sum(before * after, axis=1, keepdims=True) < 0.0, -1.0, 1.0)
-    q = before + share * (after - before)
-    return np.asarray(q / np.linalg.norm(q, axis=1, keepdims=True))
-
-
-def _multiply(a: Matrix, b: Matrix) -> Matrix:
-    aw, ax, ay, az = a.T
-    bw, bx, by, bz = b.T
-    return np.stack(
-        [
-            aw * bw - ax * bx - ay * by - az * bz,
-            aw * bx + ax * bw + ay * bz - az * by,
-            aw * by - ax * bz + ay * bw + az * bx,
-            aw * bz + ax * by - ay * bx + az * bw,
-        ],
-        axis=1,
-    )
+    return between(before, after, share)
 
 
 def _mean(wxyz: Matrix) -> Matrix:

@@ -7,6 +7,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from scipy.stats import t as student_t
 
+from server.tables import lookup
 from tracker.score import Figures
 
 #: (dataset, sensors, model) -> seed -> row
@@ -51,11 +52,7 @@ def by_cell(rows: Iterable[Figures]) -> Table:
 
 def metric(row: Mapping[str, Any], name: str) -> float | None:
     """Return a figure of a row by its name in `METRICS`; None where the run has none."""
-    value: Any = row
-    for key in METRICS[name]:
-        if value is None:
-            return None
-        value = value.get(key)
+    value = lookup(row, *METRICS[name])
     return None if value is None else float(value)
 
 

@@ -39,6 +39,8 @@ def test_the_readings_of_the_paper_can_be_chosen_by_the_end_of_their_names() -> 
         ("cycle_s.x=1", "no setting"),
         ("fuzzy.position_m=[3, 2, 1]", "expected 0 <= low < medium < high"),
         ("mean_samples=0", "mean_samples must be"),
+        ("lag_s=-1", "lag_s must be a number above zero"),
+        ("gps_error_share=[0.5, 0.5, 0.5]", "more than the whole: 1.5"),
     ],
 )
 def test_what_cannot_be_chosen_is_named(pair: str, words: str) -> None:

@@ -6,7 +6,6 @@ from typing import TypeAlias
 
 import numpy as np
 
-from tracker.estimator import Innovation
 from tracker.fixes import variance_m2
 from tracker.geodesy import SiteFrame
 from tracker.geometry import wrap_rad, wxyz_level_from_gravity, yaw_of
@@ -25,10 +24,12 @@ from tracker.pace import Pace
 from tracker.precise import observations
 from tracker.precise.activity import Activity
 from tracker.precise.compass import Compass
-from tracker.precise.error_state import Correction, ErrorState, start_covariance
+from tracker.precise.error_model import start_covariance
+from tracker.precise.error_state import ErrorState
+from tracker.precise.eye import Eye
 from tracker.precise.hypotheses import Hypotheses
 from tracker.precise.landmarks import Landmarks
-from tracker.precise.navigation import Biases, Navigation
+from tracker.precise.navigation import Biases, Navigation, mean, sample_between
 from tracker.precise.settings import PreciseSettings
 from tracker.precise.timeline import Keyframe, Timed
 from tracker.rig import Rig
@@ -38,9 +39,6 @@ _I3 = np.eye(3)
 _START_S = 0.5
 #: Pictures held for those to come.
 _HELD = 2
-#: Heading is not looked for by motion while the walker stands: eight filters would learn nothing.
-_MOVING_M_S = 0.3
-
 
 EyeHeight: TypeAlias = Callable[[float, float], float]
 """Height of the rig in site, m, above an east and a north, where it stands on the ground."""
@@ -59,16 +57,12 @@ class Engine:
         eyes_z_m: EyeHeight | None = None,
     ) -> None:
         self._eyes_z_m = eyes_z_m
-        self._off_ground = 0
         self._settings = settings
         self._site = site
-        self._rig = rig
-        self._R_body_cam = rig.T_body_cam[:3, :3]
-        x, y, z = rig.T_body_cam[:3, 3].tolist()
-        self._lever_cam_m: Vector3 = (x, y, z)
+        self._eye = Eye(settings, rig)
         x, y, z = rig.T_body_gps[:3, 3].tolist()
         self._lever_gps_m: Vector3 = (x, y, z)
-        self._landmarks = Landmarks(self._lever_cam_m)
+        self._landmarks = Landmarks(self._eye.lever_m)
         self._gravity = gravity_m_s2
         self._compass = compass
         self._activity = Activity()
@@ -80,12 +74,10 @@ class Engine:
         self._began_ns: int | None = None
         self.fix_ns: int | None = None
         """Of the last fix taken in."""
-        self._velocity_ns: int | None = None
         self._refused = 0
         self._compass_due_ns = 0
         self._suspicion = 0.0
         self.heading_found = False
-        self.innovations: list[Innovation] = []
 
     @property
     def age_s(self) -> float:
@@ -109,7 +101,7 @@ class Engine:
         if self.hypotheses is None or self._last is None:
             return
         if following is not None and measurement.t_ns > self._last.t_ns:
-            self._take_imu(_between(self._last, following, measurement.t_ns), counted=False)
+            self._take_imu(sample_between(self._last, following, measurement.t_ns), counted=False)
         match measurement:
             case GpsFix():
                 self._take_fix(measurement)
@@ -138,7 +130,7 @@ class Engine:
             self._begin(sample)
             return
         self._last = sample
-        gyro, accel = _mean(last.gyro_rad_s, sample.gyro_rad_s), _mean(last.accel_m_s2, sample.accel_m_s2)
+        gyro, accel = mean(last.gyro_rad_s, sample.gyro_rad_s), mean(last.accel_m_s2, sample.accel_m_s2)
         before = self.best.nav
         for filter_ in self.hypotheses.filters:
             filter_.advance(sample.t_ns, gyro, accel)
@@ -239,7 +231,6 @@ class Engine:
                 *observations.gps_velocity(f, measured.v_enu_m_s, last.gyro_rad_s, self._lever_gps_m), noise
             )
         )
-        self._velocity_ns = measured.t_ns
         if done is not None and self.heading_found:
             self._suspicion += 0.1 * (min(done.nis, 30.0) - self._suspicion)
             if self._suspicion > 8.0:
@@ -255,8 +246,7 @@ class Engine:
 
     def _take_sighting(self, seen: Sighting) -> None:
         assert self.hypotheses is not None
-        x, y, z = (self._R_body_cam @ np.array(seen.ray_cam)).tolist()
-        for one in self._landmarks.see(seen, (x, y, z)):
+        for one in self._landmarks.see(seen, self._eye.ray_body(seen.ray_cam)):
             self.hypotheses.correct(lambda f, one=one: self._landmarks.correct(f, one))  # type: ignore[misc]
 
     def _stand_on_ground(self) -> None:
@@ -267,7 +257,6 @@ class Engine:
         east, north, up = self.best.nav.p_m
         eyes_z_m, sigma = self._eyes_z_m(east, north), self._settings.eye_height_sigma_m
         off = abs(up - eyes_z_m) > 4.0 * sigma + 3.0 * sqrt(float(self.best.covariance[2, 2]))
-        self._off_ground = self._off_ground + 1 if off else 0
         if not off:
             noise = np.array([[self._settings.eye_height_repeats * sigma**2]])
             self.hypotheses.correct(lambda f: f.correct(*observations.height(f, eyes_z_m), noise))
@@ -296,47 +285,6 @@ class Engine:
 
     def _take_vision(self, motion: VisualMotion) -> None:
         assert self.hypotheses is not None
-        self.hypotheses.correct(lambda f: self._rotation(f, motion))
+        self.hypotheses.correct(lambda f: self._eye.rotation(f, motion))
         if any(motion.direction_key):
-            self.hypotheses.correct(lambda f: self._direction(f, motion))
-
-    def _rotation(self, filter_: ErrorState, motion: VisualMotion) -> Correction | None:
-        index = _index_of(filter_, motion.t_key_ns)
-        if index is None:
-            return None
-        settings, parallax_px = self._settings, motion.parallax_px
-        doubt = settings.vision_mixed * parallax_px / (1.0 + (parallax_px / 2.0) ** 2)
-        sigma = settings.vision_rotation_rad * (1.0 + doubt)
-        noise = sigma**2 * _I3
-        return filter_.correct(
-            *observations.rotation_to_clone(filter_, index, motion.R_key_cam, self._R_body_cam), noise
-        )
-
-    def _direction(self, filter_: ErrorState, motion: VisualMotion) -> Correction | None:
-        index = _index_of(filter_, motion.t_key_ns)
-        if index is None:
-            return None
-        seen = observations.direction_from_clone(
-            filter_, index, motion.direction_key, self._R_body_cam, self._lever_cam_m
-        )
-        if seen is None:
-            return None
-        settings = self._settings
-        sigma = max(settings.vision_direction_rad, (settings.vision_point_px / max(motion.parallax_px, 0.1)) ** 2)
-        return filter_.correct(*seen, sigma**2 * np.eye(2))
-
-
-def _index_of(filter_: ErrorState, t_ns: int) -> int | None:
-    return next((i for i, clone in enumerate(filter_.clones) if clone.t_ns == t_ns), None)
-
-
-def _mean(a: Vector3, b: Vector3) -> Vector3:
-    return (0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2]))
-
-
-def _between(a: ImuSample, b: ImuSample, t_ns: int) -> ImuSample:
-    f = (t_ns - a.t_ns) / (b.t_ns - a.t_ns)
-    (ax, ay, az), (bx, by, bz) = a.gyro_rad_s, b.gyro_rad_s
-    (cx, cy, cz), (dx, dy, dz) = a.accel_m_s2, b.accel_m_s2
-    gyro = (ax + f * (bx - ax), ay + f * (by - ay), az + f * (bz - az))
-    return ImuSample(t_ns, t_ns, gyro, (cx + f * (dx - cx), cy + f * (dy - cy), cz + f * (dz - cz)))
+            self.hypotheses.correct(lambda f: self._eye.direction(f, motion))

@@ -1,8 +1,6 @@
 """The error-state filter: a nominal state, and the covariance of what it may be off by.
 
-The error is (dp, dv, dtheta, dbg, dba, e, m, clones): position, velocity and rotation vector in site axes, biases in body axes,
-nine states of the receiver's error (unit variance; three correlation times for each axis), the magnetic deviation, and for every
-held picture its position and rotation. dtheta is on the left: R_true = Exp(dtheta) R.
+Its layout, and how it grows: `tracker/precise/error_model.py`.
 
 Reference:
     Sola, Quaternion kinematics for the error-state Kalman filter, 2017, chapter 7 (global angular error).
@@ -20,14 +18,10 @@ from tracker.geometry import conjugate, matrix_from_wxyz, multiply, normalise
 from tracker.geometry import exp as rotation_exp
 from tracker.geometry import log as log_rotation
 from tracker.measurements import Matrix, Vector3
+from tracker.precise.error_model import GPS_ERROR, SIZE, P, ProcessNoise, inertial_transition
 from tracker.precise.navigation import Biases, Navigation, advance
 from tracker.precise.settings import PreciseSettings
 
-P, V, THETA, BG, BA = slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 12), slice(12, 15)
-#: The receiver's error: first the three axes of the shortest correlation time.
-GPS_ERROR = slice(15, 24)
-MAGNETIC = 24
-SIZE = 25
 _INERTIAL = slice(0, 15)
 #: Of a position that is not known. The first fix then splits it with the receiver's error as it should be.
 _UNKNOWN_M2 = 1e4
@@ -77,15 +71,14 @@ class ErrorState:
         self.magnetic_rad = 0.0
         self.clones: list[Clone] = []
         self._gravity = gravity_m_s2
-        self._noise = _InertialNoise(settings)
+        self._noise = ProcessNoise(settings)
         self.restart_chunk()
 
     # -- prediction ---------------------------------------------------------------------------------------------------
 
     def advance(self, t_ns: int, gyro_rad_s: Vector3, accel_m_s2: Vector3) -> None:
         """Carry the nominal state on to t_ns; the covariance follows when a chunk is full, or an update needs it."""
-        before = self.nav
-        self.nav = advance(before, t_ns, gyro_rad_s, accel_m_s2, self.biases, self._gravity)
+        self.nav = advance(self.nav, t_ns, gyro_rad_s, accel_m_s2, self.biases, self._gravity)
         if t_ns - self._chunk_nav.t_ns >= _CHUNK_S * 1e9:
             self.settle()
 
@@ -153,10 +146,8 @@ class ErrorState:
                 return Correction(nis, -0.5 * m * self.settings.reject_nis, used=False)
             noise = noise * (nis / self.settings.gate_nis) + foreseen * (nis / self.settings.gate_nis - 1.0)
         S = foreseen + noise
-        K = np.linalg.solve(S, PHt.T).T
-        reduced = cov - K @ PHt.T
-        reduced = reduced - (reduced @ H.T) @ K.T + K @ noise @ K.T
-        self.covariance = 0.5 * (reduced + reduced.T)
+        K = np.asarray(np.linalg.solve(S, PHt.T).T, np.float64)
+        self.covariance = _joseph(cov, K, H, noise)
         self.move(K @ residual)
         return Correction(nis, _log_likelihood(min(nis, self.settings.reject_nis), S), used=True)
 
@@ -174,13 +165,11 @@ class ErrorState:
             residual, blocks = observe(at)
             H = _dense(blocks, len(residual), len(cov))
             S = H @ cov @ H.T + noise
-            K = np.linalg.solve(S, H @ cov).T
+            K = np.asarray(np.linalg.solve(S, H @ cov).T, np.float64)
             error = K @ (residual + H @ error)
         first, _ = observe(prior)
         nis = float(first @ np.linalg.solve(S, first)) / len(first)
-        reduced = cov - K @ (H @ cov)
-        reduced = reduced - (reduced @ H.T) @ K.T + K @ noise @ K.T
-        self.covariance = 0.5 * (reduced + reduced.T)
+        self.covariance = _joseph(cov, K, H, noise)
         self.move(error)
         return Correction(nis, _log_likelihood(nis, S), used=True)
 
@@ -228,12 +217,6 @@ class ErrorState:
 
     # -- whole-state changes ------------------------------------------------------------------------------------------
 
-    def widen(self, columns: slice, variance: Matrix) -> None:
-        """Add to the variance of some states."""
-        self.settle()
-        index = np.arange(len(self.covariance))[columns]
-        self.covariance[index, index] += variance
-
     def place(self, p_site_m: Vector3) -> None:
         """Begin anew at a position of which nothing is known yet; what is known of velocity and attitude stays."""
         self.settle()
@@ -260,10 +243,6 @@ class ErrorState:
         """(3, 3)."""
         return matrix_from_wxyz(self.nav.wxyz_site_body)
 
-    def turned_by(self, clone: Clone) -> tuple[float, float, float, float]:
-        """Return the rotation from the present body to a held one, wxyz_held_body."""
-        return multiply(conjugate(clone.wxyz_site_body), self.nav.wxyz_site_body)
-
 
 _DIAGONAL = (np.arange(SIZE), np.arange(SIZE))
 _P_V = (np.arange(3), np.arange(3, 6))
@@ -277,75 +256,13 @@ def _dense(blocks: Blocks, rows: int, columns: int) -> Matrix:
     return H
 
 
+def _joseph(cov: Matrix, K: Matrix, H: Matrix, noise: Matrix) -> Matrix:
+    """Return (I - K H) cov (I - K H)^T + K noise K^T, symmetric to the last bit."""
+    reduced = cov - K @ (H @ cov)
+    reduced = reduced - (reduced @ H.T) @ K.T + K @ noise @ K.T
+    return np.asarray(0.5 * (reduced + reduced.T))
+
+
 def _log_likelihood(nis: float, S: Matrix) -> float:
     m = len(S)
     return -0.5 * (m * nis + log(float(np.linalg.det(S))) + m * log(2.0 * pi))
-
-
-class _InertialNoise:
-    """What a step adds to the diagonal, and what it leaves of states that forget."""
-
-    def __init__(self, settings: PreciseSettings) -> None:
-        self.velocity = settings.accel_noise_m_s2_sqrt_hz**2
-        self._rates = np.zeros(SIZE)
-        self._rates[V] = self.velocity
-        self._rates[THETA] = settings.gyro_noise_rad_s_sqrt_hz**2
-        self._rates[BG] = settings.gyro_bias_walk_rad_s2_sqrt_hz**2
-        self._rates[BA] = settings.accel_bias_walk_m_s3_sqrt_hz**2
-        self._times_s = np.array([*np.repeat(settings.gps_error_s, 3), settings.magnetic_deviation_s])
-        shares = np.repeat(settings.gps_error_share, 3)
-        self._steady = np.array([*shares, settings.magnetic_deviation_rad**2])
-        self._dt_s = 0.0
-        self._kept = np.ones(10)
-
-    def kept(self, dt_s: float) -> Matrix:
-        """(10,) factors of the receiver's error and the magnetic deviation."""
-        if dt_s != self._dt_s:
-            self._dt_s, self._kept = dt_s, np.exp(-dt_s / self._times_s)
-        return self._kept
-
-    def added(self, dt_s: float) -> Matrix:
-        """(25,) variances."""
-        added = self._rates * dt_s
-        added[P] = self.velocity * dt_s**3 / 3.0
-        added[15:] = self._steady * (1.0 - self.kept(dt_s) ** 2)
-        return added
-
-
-def start_covariance(settings: PreciseSettings, position_m: Vector3, velocity_m_s: float, yaw_rad: float) -> Matrix:
-    """Return the (25, 25) covariance of a start: standard deviations of position, velocity and yaw as given."""
-    sigma = np.zeros(SIZE)
-    sigma[P], sigma[V] = position_m, velocity_m_s
-    sigma[THETA] = (settings.tilt_rad, settings.tilt_rad, yaw_rad)
-    sigma[BG], sigma[BA] = settings.gyro_bias_rad_s, settings.accel_bias_m_s2
-    sigma[GPS_ERROR] = np.sqrt(np.repeat(settings.gps_error_share, 3))
-    sigma[MAGNETIC] = settings.magnetic_deviation_rad
-    return np.diag(sigma**2)
-
-
-def inertial_transition(dt_s: float, R_site_body: Matrix, gained_m_s: Matrix) -> Matrix:
-    """Return Phi, (15, 15), of a step.
-
-    Args:
-        dt_s: Its length.
-        R_site_body: (3, 3), the mean attitude.
-        gained_m_s: (3,) integral of the specific force over the step, in site.
-    """
-    cross = skew(gained_m_s)
-    Phi = np.eye(15)
-    Phi[0, 3] = Phi[1, 4] = Phi[2, 5] = dt_s
-    Phi[P, THETA] = -0.5 * dt_s * cross
-    Phi[V, THETA] = -cross
-    turned = R_site_body * dt_s
-    Phi[THETA, BG] = -turned
-    Phi[V, BG] = 0.5 * cross @ turned
-    Phi[P, BG] = (dt_s / 6.0) * cross @ turned
-    Phi[V, BA] = -turned
-    Phi[P, BA] = -0.5 * dt_s * turned
-    return Phi
-
-
-def skew(v: Matrix | Vector3) -> Matrix:
-    """Return [v]x, (3, 3)."""
-    x, y, z = (float(value) for value in v)
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

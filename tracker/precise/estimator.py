@@ -25,7 +25,7 @@ from tracker.precise.blend import Blend
 from tracker.precise.compass import Compass
 from tracker.precise.engine import Engine, EyeHeight
 from tracker.precise.error_state import ErrorState
-from tracker.precise.navigation import Biases, Navigation, advance, carried
+from tracker.precise.navigation import Biases, Navigation, advance, carried, mean
 from tracker.precise.settings import PreciseSettings
 from tracker.precise.timeline import Keyframe, Timeline
 from tracker.rig import Rig
@@ -125,10 +125,7 @@ class PreciseEstimator:
             zero = (0.0, 0.0, 0.0)
             return Navigation(sample.t_ns, zero, zero, (1.0, 0.0, 0.0, 0.0))
         nav, last = self._free[-1]
-        (ax, ay, az), (bx, by, bz) = last.gyro_rad_s, sample.gyro_rad_s
-        (cx, cy, cz), (dx, dy, dz) = last.accel_m_s2, sample.accel_m_s2
-        gyro = (0.5 * (ax + bx), 0.5 * (ay + by), 0.5 * (az + bz))
-        accel = (0.5 * (cx + dx), 0.5 * (cy + dy), 0.5 * (cz + dz))
+        gyro, accel = mean(last.gyro_rad_s, sample.gyro_rad_s), mean(last.accel_m_s2, sample.accel_m_s2)
         return advance(nav, sample.t_ns, gyro, accel, self._biases, self._gravity)
 
     @property
@@ -170,10 +167,8 @@ class PreciseEstimator:
         if free[low][0].t_ns == t_ns or low == 0:
             return free[low][0]
         before, after = free[low - 1], free[low]
-        (ax, ay, az), (bx, by, bz) = before[1].gyro_rad_s, after[1].gyro_rad_s
-        (cx, cy, cz), (dx, dy, dz) = before[1].accel_m_s2, after[1].accel_m_s2
-        gyro = (0.5 * (ax + bx), 0.5 * (ay + by), 0.5 * (az + bz))
-        accel = (0.5 * (cx + dx), 0.5 * (cy + dy), 0.5 * (cz + dz))
+        gyro = mean(before[1].gyro_rad_s, after[1].gyro_rad_s)
+        accel = mean(before[1].accel_m_s2, after[1].accel_m_s2)
         return advance(before[0], t_ns, gyro, accel, self._biases, self._gravity)
 
     def _beyond(self, nav: Navigation, sample: ImuSample, t_ns: int) -> Navigation:
@@ -205,9 +200,8 @@ class PreciseEstimator:
         return cov
 
     def innovations(self) -> list[Innovation]:
-        """Return the updates since the last call and forget them."""
-        found, self._engine.innovations = self._engine.innovations, []
-        return found
+        """Return nothing: these are the paper's filter error, of measurements m_P and m_R that this filter does not make."""
+        return []
 
     # -- state --------------------------------------------------------------------------------------------------------
 

@@ -11,7 +11,8 @@ import numpy as np
 from tracker.geometry import conjugate, multiply, normalise, rotate
 from tracker.measurements import Sighting, Vector3, Wxyz
 from tracker.precise import observations
-from tracker.precise.error_state import Correction, ErrorState, P
+from tracker.precise.error_model import P
+from tracker.precise.error_state import Correction, ErrorState
 from tracker.precise.navigation import Navigation
 
 #: Sightings older than this are not taken again: the way since is not known well enough.

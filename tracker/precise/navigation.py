@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from tracker.geometry import conjugate, exp, multiply, normalise, rotate
-from tracker.measurements import Vector3, Wxyz
+from tracker.measurements import ImuSample, Vector3, Wxyz
 
 
 class Navigation(NamedTuple):
@@ -45,6 +45,20 @@ def advance(
         (vx + fx * dt, vy + fy * dt, vz + fz * dt),
         normalise(multiply(nav.wxyz_site_body, exp((wx, wy, wz)))),
     )
+
+
+def mean(a: Vector3, b: Vector3) -> Vector3:
+    """Return what a rate was between two samples of it."""
+    return (0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2]))
+
+
+def sample_between(a: ImuSample, b: ImuSample, t_ns: int) -> ImuSample:
+    """Return the sample that would have been taken at a time between two."""
+    f = (t_ns - a.t_ns) / (b.t_ns - a.t_ns)
+    (ax, ay, az), (bx, by, bz) = a.gyro_rad_s, b.gyro_rad_s
+    (cx, cy, cz), (dx, dy, dz) = a.accel_m_s2, b.accel_m_s2
+    gyro = (ax + f * (bx - ax), ay + f * (by - ay), az + f * (bz - az))
+    return ImuSample(t_ns, t_ns, gyro, (cx + f * (dx - cx), cy + f * (dy - cy), cz + f * (dz - cz)))
 
 
 def carried(start: Navigation, free_start: Navigation, free_end: Navigation, gravity_m_s2: float) -> Navigation:

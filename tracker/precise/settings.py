@@ -1,9 +1,10 @@
 """Noise and habits that the precise filter believes in."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from math import pi
 
 from tracker.measurements import Vector3
+from tracker.readings import require_positive
 
 
 @dataclass(frozen=True)
@@ -81,3 +82,10 @@ class PreciseSettings:
     """Heading is called known when its standard deviation is below this."""
     heading_known_rad: float = 0.3
     """The page is told that north is known when it is known this well."""
+
+    def __post_init__(self) -> None:
+        for name in (field.name for field in fields(self)):
+            value = getattr(self, name)
+            require_positive(**{name: min(value) if isinstance(value, tuple) else value})
+        if sum(self.gps_error_share) > 1.0:
+            raise ValueError(f"the shares of gps_error_share are more than the whole: {sum(self.gps_error_share):g}")

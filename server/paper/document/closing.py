@@ -41,7 +41,7 @@ def again() -> list[Block]:
             "where it was; results are kept under `build/paper` by the content of the sources that they depend on."
         ),
         Code(
-            "make paper                       # study, sweep, attitude, this document and its HTML twin\n"
+            "make paper                       # study, sweep, attitude, readings, ablation, this document and its twin\n"
             "python -m server.paper --only document\n"
             "agora evaluate LOG --report DIR  # the same figures of any walk"
         ),

@@ -5,8 +5,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
-from typing import Any
 
+from server.tables import lookup
 from tracker.score import Figures
 
 SENSORS = ("gps-imu", "camera-gps-imu")
@@ -78,15 +78,8 @@ class Results:
 
 def middle(rows: Iterable[Figures], *keys: str) -> float | None:
     """Return the median over rows of what lies at the end of some keys; None where no row has it."""
-    values = [value for row in rows if (value := _at(row, keys)) is not None]
+    values = [value for row in rows if (value := lookup(row, *keys)) is not None]
     return float(median(values)) if values else None
-
-
-def _at(row: Figures, keys: tuple[str, ...]) -> Any:
-    value: Any = row
-    for key in keys:
-        value = value.get(key) if isinstance(value, dict) else None
-    return value
 
 
 def _read(path: Path) -> Figures | None:

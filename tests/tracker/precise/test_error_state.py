@@ -8,7 +8,8 @@ import pytest
 from tracker.geometry import conjugate, exp, log, multiply, normalise, wxyz_from_yaw
 from tracker.measurements import Vector3
 from tracker.precise import observations
-from tracker.precise.error_state import BA, BG, THETA, ErrorState, P, V, inertial_transition, start_covariance
+from tracker.precise.error_model import BA, BG, THETA, P, V, inertial_transition, start_covariance
+from tracker.precise.error_state import ErrorState
 from tracker.precise.navigation import Biases, Navigation, advance, carried
 from tracker.precise.settings import PreciseSettings
 

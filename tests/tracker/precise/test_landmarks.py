@@ -7,7 +7,8 @@ import pytest
 
 from tracker.geometry import matrix_from_wxyz, wxyz_from_yaw
 from tracker.measurements import Sighting, Vector3
-from tracker.precise.error_state import ErrorState, P, start_covariance
+from tracker.precise.error_model import P, start_covariance
+from tracker.precise.error_state import ErrorState
 from tracker.precise.landmarks import DISCOUNTED, Landmarks
 from tracker.precise.navigation import Biases, Navigation
 from tracker.precise.settings import PreciseSettings

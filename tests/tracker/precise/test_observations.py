@@ -9,7 +9,8 @@ from numpy.random import Generator
 from tracker.geometry import matrix_from_wxyz, normalise
 from tracker.measurements import Matrix, Vector3, Wxyz
 from tracker.precise import observations
-from tracker.precise.error_state import ErrorState, Observation, start_covariance
+from tracker.precise.error_model import start_covariance
+from tracker.precise.error_state import ErrorState, Observation
 from tracker.precise.navigation import Biases, Navigation
 from tracker.precise.settings import PreciseSettings
 

@@ -1,0 +1,89 @@
+"""The error of the filter: its layout, what a step makes of it, and what it is at the start.
+
+The error is (dp, dv, dtheta, dbg, dba, e, m, clones): position, velocity and rotation vector in site axes, biases in body axes,
+nine states of the receiver's error (unit variance; three correlation times for each axis), the magnetic deviation, and for every
+held picture its position and rotation. dtheta is on the left: R_true = Exp(dtheta) R.
+
+Reference:
+    Sola, Quaternion kinematics for the error-state Kalman filter, 2017, chapter 7 (global angular error).
+"""
+
+import numpy as np
+
+from tracker.measurements import Matrix, Vector3
+from tracker.precise.settings import PreciseSettings
+
+P, V, THETA, BG, BA = slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 12), slice(12, 15)
+#: The receiver's error: first the three axes of the shortest correlation time.
+GPS_ERROR = slice(15, 24)
+MAGNETIC = 24
+SIZE = 25
+
+
+class ProcessNoise:
+    """What a step adds to the diagonal, and what it leaves of states that forget."""
+
+    def __init__(self, settings: PreciseSettings) -> None:
+        self.velocity = settings.accel_noise_m_s2_sqrt_hz**2
+        self._rates = np.zeros(SIZE)
+        self._rates[V] = self.velocity
+        self._rates[THETA] = settings.gyro_noise_rad_s_sqrt_hz**2
+        self._rates[BG] = settings.gyro_bias_walk_rad_s2_sqrt_hz**2
+        self._rates[BA] = settings.accel_bias_walk_m_s3_sqrt_hz**2
+        self._times_s = np.array([*np.repeat(settings.gps_error_s, 3), settings.magnetic_deviation_s])
+        shares = np.repeat(settings.gps_error_share, 3)
+        self._steady = np.array([*shares, settings.magnetic_deviation_rad**2])
+        self._dt_s = 0.0
+        self._kept = np.ones(10)
+
+    def kept(self, dt_s: float) -> Matrix:
+        """(10,) factors of the receiver's error and the magnetic deviation."""
+        if dt_s != self._dt_s:
+            self._dt_s, self._kept = dt_s, np.exp(-dt_s / self._times_s)
+        return self._kept
+
+    def added(self, dt_s: float) -> Matrix:
+        """(25,) variances."""
+        added = self._rates * dt_s
+        added[P] = self.velocity * dt_s**3 / 3.0
+        added[15:] = self._steady * (1.0 - self.kept(dt_s) ** 2)
+        return added
+
+
+def start_covariance(settings: PreciseSettings, position_m: Vector3, velocity_m_s: float, yaw_rad: float) -> Matrix:
+    """Return the (25, 25) covariance of a start: standard deviations of position, velocity and yaw as given."""
+    sigma = np.zeros(SIZE)
+    sigma[P], sigma[V] = position_m, velocity_m_s
+    sigma[THETA] = (settings.tilt_rad, settings.tilt_rad, yaw_rad)
+    sigma[BG], sigma[BA] = settings.gyro_bias_rad_s, settings.accel_bias_m_s2
+    sigma[GPS_ERROR] = np.sqrt(np.repeat(settings.gps_error_share, 3))
+    sigma[MAGNETIC] = settings.magnetic_deviation_rad
+    return np.diag(sigma**2)
+
+
+def inertial_transition(dt_s: float, R_site_body: Matrix, gained_m_s: Matrix) -> Matrix:
+    """Return Phi, (15, 15), of a step.
+
+    Args:
+        dt_s: Its length.
+        R_site_body: (3, 3), the mean attitude.
+        gained_m_s: (3,) integral of the specific force over the step, in site.
+    """
+    cross = skew(gained_m_s)
+    Phi = np.eye(15)
+    Phi[0, 3] = Phi[1, 4] = Phi[2, 5] = dt_s
+    Phi[P, THETA] = -0.5 * dt_s * cross
+    Phi[V, THETA] = -cross
+    turned = R_site_body * dt_s
+    Phi[THETA, BG] = -turned
+    Phi[V, BG] = 0.5 * cross @ turned
+    Phi[P, BG] = (dt_s / 6.0) * cross @ turned
+    Phi[V, BA] = -turned
+    Phi[P, BA] = -0.5 * dt_s * turned
+    return Phi
+
+
+def skew(v: Matrix | Vector3) -> Matrix:
+    """Return [v]x, (3, 3)."""
+    x, y, z = (float(value) for value in v)
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
