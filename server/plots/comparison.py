@@ -104,7 +104,7 @@ def camera_figure(rows: Sequence[Figures]) -> Figure:
             axes.set(title=f"({letter}) {name}", ylim=(5.6, 0.4), yticks=range(1, 6))
             axes.margins(x=0.15)
         grid[0].set_ylabel("dataset")
-        grid[0].legend(loc="best")
+        grid[-1].legend(loc="center")
         figure.supxlabel("with the camera / without it", fontsize=8.5)
     return figure
 

@@ -62,7 +62,7 @@ def _told(results: Results, cells: list[tuple[str, int, dict[str, Figures]]]) ->
     def change(name: str) -> str:
         whole = middle(results.camera(name), "ratio_median")
         own = middle([found[name] for _, _, found in cells if name in found], "ratio_median")
-        return f"{percent(own or 1.0)} of {percent(whole or 1.0)}"
+        return f"{percent(own or 1.0)} (of {percent(whole or 1.0)})"
 
     better = {
         name: sum(found[name]["ratio_median"] < 1.0 for _, _, found in cells if name in found) for name in _METRICS
