@@ -25,6 +25,7 @@ const WELL: Situation = {
   asked: null,
   model: "shown",
 };
+const ESTIMATORS = ["camera-gps-imu/famm", "camera-gps-imu/precise"] as const;
 const MODELS = [0, 1, 2].flatMap((i) => [0, 1, 2].map((j) => `P${i}R${j}`));
 
 test("when all is well nothing is said, and a notice of the server's is passed on", () => {
@@ -83,13 +84,21 @@ test("pictures that stay away are missed while playing, not while pausing", () =
 });
 
 test("each of the nine motion models has words and a colour of its own; anything else has none", () => {
-  expect(new Set(MODELS.map(motionWords)).size).toBe(9);
+  expect(new Set(ESTIMATORS.flatMap((estimator) => MODELS.map((model) => motionWords(model, estimator)))).size).toBe(
+    18,
+  );
   expect(new Set(MODELS.map(motionColour)).size).toBe(9);
-  expect(motionWords("P0R2")).toBe("position held, turning doubled");
   for (const other of [null, "", "P3R0", "P0", "-"]) {
-    expect(motionWords(other)).toBe("no motion model");
+    for (const estimator of ESTIMATORS) expect(motionWords(other, estimator)).toBe("no motion model");
     expect(MODELS.map(motionColour)).not.toContain(motionColour(other));
   }
+});
+
+test("a motion model is worded as its estimator means it: the paper's coefficients, or what the walker does", () => {
+  expect(motionWords("P0R2", "gps-imu/famm")).toBe("position held, turning doubled");
+  expect(motionWords("P0R2", "camera-gps-imu/precise")).toBe("standing, view turning fast");
+  expect(motionWords("P1R0", "gps-imu/precise")).toBe("walking, view still");
+  expect(motionWords("P2R1", "camera-gps-imu/imm")).toBe("position doubled, turning steady");
 });
 
 test.each([

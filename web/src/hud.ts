@@ -39,7 +39,7 @@ export class Hud {
     this.set("position", pose ? positionText(pose) : "–");
     this.set("heading", pose ? headingText(pose) : "–");
     const model = pose?.motionModel ?? null;
-    this.set("motion", model ? `${model}: ${motionWords(model)}` : "none");
+    this.set("motion", pose && model ? `${model}: ${motionWords(model, pose.estimator)}` : "none");
     this.cells["motion"]?.style.setProperty("--motion", motionColour(model));
     this.set("estimator-now", pose ? pose.estimator : "–");
   }

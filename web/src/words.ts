@@ -54,15 +54,30 @@ function noPictures(s: Situation): string {
   return s.playing ? "No pictures here: this part of the recording has none." : "Press play to start the walk.";
 }
 
-const COEFFICIENT_WORDS: readonly string[] = ["held", "steady", "doubled"];
+/** What a motion model's two indices mean: position or walk first, then rotation. */
+interface MotionWords {
+  readonly position: readonly [string, string, string];
+  readonly rotation: readonly [string, string, string];
+}
 
-/** Return `P1R2` in words: "position steady, turning doubled". */
-export function motionWords(model: string | null): string {
+/** In the paper's filter they are coefficients of its velocities, 0, 1 and 2. */
+const COEFFICIENTS: MotionWords = {
+  position: ["position held", "position steady", "position doubled"],
+  rotation: ["turning held", "turning steady", "turning doubled"],
+};
+
+/** In `precise` they are what the walker does. */
+const ACTIVITIES: MotionWords = {
+  position: ["standing", "walking", "walking briskly"],
+  rotation: ["view still", "view turning", "view turning fast"],
+};
+
+/** Return `P1R2` in words, as its estimator means it: "position steady, turning doubled", or "walking, view turning fast". */
+export function motionWords(model: string | null, estimator: string): string {
   const match = /^P([012])R([012])$/.exec(model ?? "");
   if (!match) return "no motion model";
-  const position = COEFFICIENT_WORDS[Number(match[1])] ?? "";
-  const turning = COEFFICIENT_WORDS[Number(match[2])] ?? "";
-  return `position ${position}, turning ${turning}`;
+  const words = estimator.endsWith("/precise") ? ACTIVITIES : COEFFICIENTS;
+  return `${words.position[Number(match[1])] ?? ""}, ${words.rotation[Number(match[2])] ?? ""}`;
 }
 
 /** Three lightnesses for position, three hues for turning; told apart without hue, and never the only carrier. */
