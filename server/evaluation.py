@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from server.settings import changes
-from server.tables import lookup
+from server.tables import lookup, without_filter_error
 from tracker.errors import InputError, MissingSensor
 from tracker.estimators import ESTIMATORS, Settings, check_name, missing_sensors
 from tracker.evaluate import Run, figures, run
@@ -140,6 +140,8 @@ def print_table(evaluation: Evaluation, console: Console) -> None:
         console.print(
             "With " + ", ".join(f"{key} = {value}" for key, value in evaluation.settings.items()), style="dim"
         )
+    if (reason := without_filter_error(evaluation.runs)) is not None:
+        console.print(reason, style="dim")
     for entry in evaluation.missing:
         console.print(f"{entry['log']} cannot run {entry['estimator']}: it has {entry['missing']}.", style="yellow")
     # every run of a log reads the same messages, and one without a camera fewer of them: the fullest reading speaks

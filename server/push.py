@@ -22,7 +22,7 @@ from server.outbox import Outbox
 from server.sessions import REPLACED
 from server.wire import FrameMeta, PoseUpdate, encode_frame, encode_pose
 from tracker.errors import InputError, MissingSensor
-from tracker.estimator import Pose
+from tracker.estimator import NO_MOTION_MODEL, Pose
 from tracker.geometry import transform
 from tracker.measurements import Frame
 from tracker.rig import Rig
@@ -78,7 +78,7 @@ def frame_message(
         T_site_cam=T_site_cam,
         cov=np.zeros((6, 6)) if pose is None else pose.cov,
         camera=rig.camera,
-        motion_model="-" if pose is None else pose.motion_model,
+        motion_model=NO_MOTION_MODEL if pose is None else pose.motion_model,
         estimator=estimator,
         v_site_m_s=(0.0, 0.0, 0.0) if pose is None else pose.v_site_m_s,
         position_s=position_s,

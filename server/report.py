@@ -15,7 +15,7 @@ from server.plots.paths import path_caption, path_figure
 from server.plots.plan import Plan, plan_of
 from server.plots.style import Kind, Picture, drawn
 from server.plots.trace import Trace
-from server.tables import PAPER_FOUR, filter_error_grid, share_grid, truth_grid
+from server.tables import PAPER_FOUR, filter_error_grid, share_grid, truth_grid, without_filter_error
 from tracker.errors import InputError
 
 #: Above this length line art is a picture of pixels: a walk of a quarter of an hour has thousands of strokes.
@@ -99,6 +99,8 @@ def _grids(evaluation: Evaluation) -> list[Block]:
         share_grid(evaluation.runs, "models"),
     ]
     found: list[Block] = [grid for grid in grids if grid is not None]
+    if (reason := without_filter_error(evaluation.runs)) is not None:
+        found.insert(0, Text(reason))
     return found or [Text("No run had a filter or a truth to compare with.")]
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from server.blocks import Grid
+from tracker.estimators import PRECISE
 from tracker.score import Figures
 
 DASH = "–"
@@ -52,6 +53,17 @@ def filter_error_grid(rows: Sequence[Figures], sensors: str, name: str) -> Grid 
     )
     head = ("log", "size", "CMM mean", "CMM std", "FAMM mean", "FAMM std", "")
     return Grid(name, caption, head, tuple(cells))
+
+
+def without_filter_error(rows: Sequence[Figures]) -> str | None:
+    """Say which runs have no filter error and why; None where none lacks it for that reason."""
+    names = list(dict.fromkeys(row["estimator"] for row in rows if row["estimator"].endswith(f"/{PRECISE}")))
+    if not names:
+        return None
+    return (
+        f"{' and '.join(names)} {'has' if len(names) == 1 else 'have'} no filter error and no updates in the paper's sense: they "
+        "are of m_P and m_R, which only the paper's filter measures."
+    )
 
 
 def once(rows: Sequence[tuple[str, ...]]) -> tuple[tuple[str, ...], ...]:
@@ -118,7 +130,7 @@ def share_grid(rows: Sequence[Figures], name: str) -> Grid | None:
     ]
     return Grid(
         name,
-        "Motion models in force. Per cent of each run's updates.",
+        "Motion models in force. Per cent of each run's updates; of the time where the filter has none in the paper's sense.",
         ("log", "estimator", *models),
         once(cells),
         left=2,

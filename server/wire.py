@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 
 from server.errors import MalformedMessage
+from tracker.estimator import NO_MOTION_MODEL
 from tracker.measurements import Matrix, Vector3, Wxyz
 from tracker.rig import CameraModel, DistortionModel
 
@@ -19,7 +20,6 @@ VERSION: Final = 1
 FRAME_HEADER_BYTES: Final = 384
 POSE_BYTES: Final = 112
 MAX_FRAME_BYTES: Final = 4 * 1024 * 1024
-NO_MOTION_MODEL: Final = "-"
 MOTION_MODELS: Final = tuple(f"P{i}R{j}" for i in range(3) for j in range(3))
 
 _FRAME = struct.Struct("<4sHHIIqq16d21f4f8fHHBBBB32s3fd32s")

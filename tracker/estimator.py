@@ -9,6 +9,9 @@ from typing import Any, Protocol, TypeAlias
 
 from tracker.measurements import Matrix, Measurement, Outcome, Vector3, Wxyz
 
+NO_MOTION_MODEL = "-"
+"""Said of a pose whose estimator has none."""
+
 
 @dataclass(frozen=True, slots=True)
 class Pose:
@@ -21,7 +24,7 @@ class Pose:
     cov: Matrix
     """(6, 6): position in site (m²), then rotation vector in site (rad²)."""
     motion_model: str
-    """`P0R0` … `P2R2`, or `-` where the estimator has none."""
+    """`P0R0` … `P2R2`, or `NO_MOTION_MODEL`."""
     heading_known: bool
     """False until something (magnetometer, compass, course, truth) has given north."""
 

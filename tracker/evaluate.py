@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tracker import score
 from tracker.errors import MissingSensor
-from tracker.estimator import Estimator, Innovation, Origin, Pose
+from tracker.estimator import NO_MOTION_MODEL, Estimator, Innovation, Origin, Pose
 from tracker.estimators import Settings, build, missing_sensors
 from tracker.geodesy import SiteFrame
 from tracker.geomagnetism import magnetic_field
@@ -192,7 +192,9 @@ def figures(result: Run) -> Figures:
         "gps": _raw_gps(result),
         "latency_ms": _latency(result),
         "vision_rate_hz": result.vision_estimates / result.duration_s if result.latencies_ns["vision"] else None,
-        "motion_model_share": _shares(result.innovations),
+        "motion_model_share": _shares(
+            [i.motion_model for i in result.innovations] or [pose.motion_model for pose in result.poses]
+        ),
         "counts": {
             **{name: result.counts[name] for name in ("imu", "gps", "frames")},
             "rejected": dict(result.rejected),
@@ -251,6 +253,6 @@ def _latency(result: Run) -> Figures:
     }
 
 
-def _shares(innovations: list[Innovation]) -> dict[str, float]:
-    counts = Counter(innovation.motion_model for innovation in innovations)
-    return {model: count / len(innovations) for model, count in sorted(counts.items())}
+def _shares(models: list[str]) -> dict[str, float]:
+    counts = Counter(model for model in models if model != NO_MOTION_MODEL)
+    return {model: count / counts.total() for model, count in sorted(counts.items())}

@@ -5,7 +5,7 @@ from math import isfinite, pi
 
 import numpy as np
 
-from tracker.estimator import Innovation, Pose, Snapshot
+from tracker.estimator import NO_MOTION_MODEL, Innovation, Pose, Snapshot
 from tracker.geometry import multiply, normalise, slerp, wxyz_from_matrix
 from tracker.measurements import Matrix, Measurement, Outcome, TruePose, Vector3
 
@@ -72,7 +72,8 @@ class TruthEstimator:
         rotation = (1e-12 if is_known else pi**2 / 3.0 for is_known in known)
         position = (truth.sigma_h_m**2 + 1e-12, truth.sigma_h_m**2 + 1e-12, 1e-12 if truth.height_known else 1e4)
         q = normalise(multiply(self._wxyz_site_map, (w, i, j, k)))
-        return Pose(t_ns, (x, y, z), q, (vx, vy, vz), np.diag([*position, *rotation]), "-", truth.heading_known)
+        cov = np.diag([*position, *rotation])
+        return Pose(t_ns, (x, y, z), q, (vx, vy, vz), cov, NO_MOTION_MODEL, truth.heading_known)
 
     def innovations(self) -> list[Innovation]:
         """Return nothing: truth is not filtered."""

@@ -18,6 +18,7 @@ from server.plots.style import (
     new_figure,
 )
 from server.plots.trace import Names, Trace
+from tracker.estimator import NO_MOTION_MODEL
 
 _LEAST_M = 12.0
 """A path is shown in a square no narrower: who stands still must not look like one who walks."""
@@ -76,11 +77,12 @@ def _strays(trace: Trace) -> str:
 
 
 def _most_used(trace: Trace) -> str:
-    names, counts = np.unique(trace.update_model, return_counts=True)
+    models, whole = (trace.update_model, "its updates") if len(trace.update_model) else (trace.model, "the time")
+    names, counts = np.unique(models[models != NO_MOTION_MODEL], return_counts=True)
     if len(names) == 0:
         return "no motion model"
     best = int(np.argmax(counts))
-    return f"{names[best]} in {100.0 * counts[best] / counts.sum():.0f} % of its updates"
+    return f"{names[best]} in {100.0 * counts[best] / counts.sum():.0f} % of {whole}"
 
 
 def runs_of(model: Names) -> Iterator[tuple[str, slice]]:

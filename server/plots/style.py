@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from PIL import Image
 
+from tracker.estimator import NO_MOTION_MODEL
 from tracker.fuzzy import MOTION_MODELS
 
 Kind: TypeAlias = Literal["svg", "png"]
@@ -39,7 +40,7 @@ MODEL_COLOURS = {
     "P2R0": "#862a00",
     "P2R1": "#d9660a",
     "P2R2": "#f6b76e",
-    "-": FAINT,
+    NO_MOTION_MODEL: FAINT,
 }
 _WIDTH_BY_POSITION = {"0": 1.0, "1": 2.2, "2": 4.0}
 #: One colour, marker and dash for each rival, the same in every figure.

@@ -56,6 +56,7 @@ def test_all_that_the_sensors_allow(walk: Path, tmp_path: Path) -> None:
     table = _printed(evaluation)
     assert "walk cannot run camera-gps-imu/cmm: it has no camera." in table
     assert "cut off" not in table
+    assert "gps-imu/precise has no filter error" in table
     trajectory = file_interface.read_tum_trajectory_file(tmp_path / "poses" / "walk.gps-imu-famm.tum")
     assert np.median(np.diff(trajectory.timestamps)) == pytest.approx(0.02, abs=1e-5)
     assert trajectory.num_poses > 1500

@@ -12,8 +12,8 @@ from server.cli import SITE, app
 from server.evaluation import Evaluation
 from server.page import html
 from server.report import report_of, slug_of, write_report
-from server.tables import arrow, filter_error_grid, once, truth_grid
-from tests.server.plots.traces import trace, without_truth
+from server.tables import arrow, filter_error_grid, once, truth_grid, without_filter_error
+from tests.server.plots.traces import trace, without_truth, without_updates
 from tracker.errors import InputError
 from tracker.log_writer import LogWriter
 from tracker.score import Figures
@@ -88,6 +88,16 @@ def test_a_log_without_truth_or_filter() -> None:
     assert not [b for b in document.blocks if isinstance(b, Grid)]
     assert [b.text for b in document.blocks if isinstance(b, Heading)] == ["Tables", "walk"]
     assert "Estimated paths of walk" in html(document)
+
+
+def test_a_filter_without_the_papers_measurements_says_so() -> None:
+    precise = without_updates(trace("gps-imu/precise"))
+    row = {**_row("gps-imu/precise", 0.0, 0.8), "filter_error_m": None}
+    document = report_of(Evaluation([row]), [precise])
+    assert [picture.name for picture in document.pictures()] == ["path-walk", "angles-walk"]
+    assert "gps-imu/precise has no filter error and no updates in the paper" in html(document)
+    assert without_filter_error([row, {**row, "estimator": "camera-gps-imu/precise"}]) is not None
+    assert without_filter_error(ROWS) is None
 
 
 def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:

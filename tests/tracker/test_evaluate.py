@@ -1,5 +1,6 @@
 """Evaluation of small simulated logs: every figure that is promised, and nothing learnt from ground truth."""
 
+import re
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -86,7 +87,8 @@ def test_every_figure_is_there(whole: Log, name: str) -> None:
     assert (found["latency_ms"]["imu_to_pose_p50"] is None) == is_truth
     assert (found["vision_rate_hz"] is not None) == has_eyes
     shares = found["motion_model_share"]
-    assert sum(shares.values()) == pytest.approx(1.0 if is_paper else 0.0)
+    assert sum(shares.values()) == pytest.approx(0.0 if is_truth else 1.0)
+    assert all(re.fullmatch("P[012]R[012]", model) for model in shares)
     counts = found["counts"]
     assert (counts["imu"], counts["frames"] > 100) == (int(SECONDS * 100), has_eyes)
     assert counts["skipped"] == {}

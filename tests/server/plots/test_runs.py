@@ -1,5 +1,7 @@
 """Figures of runs: what is drawn is what was measured, and the captions carry the numbers."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -12,8 +14,8 @@ from server.plots.paths import path_caption, path_figure, runs_of
 from server.plots.plan import plan_of
 from server.plots.style import MODEL_COLOURS, drawn
 from server.plots.trace import Array
-from tests.server.plots.traces import trace, without_truth
-from tracker.estimator import Origin
+from tests.server.plots.traces import trace, without_truth, without_updates
+from tracker.estimator import NO_MOTION_MODEL, Origin
 from tracker.simulate import AGORA_ORIGIN
 
 FIVE = [trace(name) for name in ("gps-imu/cmm", "camera-gps-imu/cmm", "gps-imu/famm", "camera-gps-imu/famm")]
@@ -34,6 +36,13 @@ def test_five_ways() -> None:
     assert [line.get_color() for line in axes.lines[1:]] == [MODEL_COLOURS["P0R0"], MODEL_COLOURS["P1R1"]]
     assert len({tuple(axes.get_xlim()) for axes in figure.axes if axes.axison}) == 1
     assert "(d) gps-imu/famm, 2.00 m RMS from the truth, P1R1 in 75 % of its updates" in path_caption(FIVE)
+
+
+def test_a_filter_without_the_papers_updates_is_told_by_the_time() -> None:
+    precise = without_updates(trace("gps-imu/precise"))
+    assert "(b) gps-imu/precise, 2.00 m RMS from the truth, P1R1 in 75 % of the time." in path_caption([precise])
+    truth = replace(precise, estimator="truth", model=np.full(len(precise.model), NO_MOTION_MODEL))
+    assert path_caption([truth]).endswith("no motion model.")
 
 
 def test_who_stands_still_looks_still() -> None:

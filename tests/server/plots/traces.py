@@ -42,3 +42,16 @@ def without_truth(known: Trace) -> Trace:
         truth_p_site_m=np.full_like(known.truth_p_site_m, np.nan),
         truth_rpy_rad=np.full_like(known.truth_rpy_rad, np.nan),
     )
+
+
+def without_updates(known: Trace) -> Trace:
+    """Return the same of a filter that makes no measurements of the paper's kind, and has no state covariance of its kind."""
+    none = np.zeros(0)
+    return replace(
+        known,
+        update_t_s=none,
+        update_m=none,
+        update_rad=none,
+        update_model=none.astype(str),
+        state_covariance=np.zeros((0, 0)),
+    )
