@@ -66,28 +66,6 @@ def walkable(site: Site) -> Scene:
     return Scene(nodes, {mesh.material: WHITE for node in nodes for mesh in node.meshes})
 
 
-def height_at(scene: Scene, epoch: Epoch, east_m: float, north_m: float) -> float | None:
-    """Return the height of the highest place to stand at a point, above the square's paving; None where there is none.
-
-    Args:
-        scene: From `walkable`.
-        epoch: The model that one walks in.
-        east_m: Site frame.
-        north_m: Site frame.
-    """
-    mesh = next(node for node in scene.nodes if node.name == f"walkable/{epoch}").meshes[0]
-    a, b, c = mesh.positions_m[mesh.triangles].astype(np.float64).transpose(1, 0, 2)
-    point = np.array([east_m, north_m])
-    ab, ac, ap = (b - a)[:, :2], (c - a)[:, :2], point - a[:, :2]
-    doubled = ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0]
-    s = (ap[:, 0] * ac[:, 1] - ap[:, 1] * ac[:, 0]) / doubled
-    t = (ab[:, 0] * ap[:, 1] - ab[:, 1] * ap[:, 0]) / doubled
-    inside = (s >= -1e-6) & (t >= -1e-6) & (s + t <= 1.0 + 1e-6)
-    if not inside.any():
-        return None
-    return float((a[:, 2] + s * (b - a)[:, 2] + t * (c - a)[:, 2])[inside].max())
-
-
 def _surface(site: Site, terrain: Terrain, standing: list[_Standing]) -> Array:
     """Triangles (m, 3, 3) to walk on."""
     solid = {one.monument.id: _solid(one) for one in standing}

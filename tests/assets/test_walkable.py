@@ -8,13 +8,14 @@ import shapely
 import trimesh
 
 from assets.axes import agora_from_site
+from assets.footholds import Footholds
 from assets.footing import Floor, Footing, Solid, footing
 from assets.gltf import Scene
 from assets.records import PAVING, Epoch
 from assets.shape import Mesh, Place
 from assets.site import Monument, Site
 from assets.terrain import Terrain
-from assets.walkable import BODY_M, height_at, walkable
+from assets.walkable import BODY_M, walkable
 from tests.assets.geometry import across
 
 EPOCHS: tuple[Epoch, ...] = get_args(Epoch)
@@ -23,6 +24,11 @@ EPOCHS: tuple[Epoch, ...] = get_args(Epoch)
 @pytest.fixture(scope="module")
 def ways(site: Site) -> Scene:
     return walkable(site)
+
+
+@pytest.fixture(scope="module")
+def footholds(ways: Scene) -> dict[Epoch, Footholds]:
+    return {epoch: Footholds.of(ways, epoch) for epoch in EPOCHS}
 
 
 def mesh_of(scene: Scene, epoch: Epoch) -> Mesh:
@@ -39,9 +45,11 @@ def outline(monument: Monument) -> shapely.Polygon:
 
 
 @pytest.mark.parametrize("epoch", EPOCHS)
-def test_the_square_is_walked_on_at_the_ground(ways: Scene, terrain: Terrain, epoch: Epoch) -> None:
+def test_the_square_is_walked_on_at_the_ground(
+    footholds: dict[Epoch, Footholds], terrain: Terrain, epoch: Epoch
+) -> None:
     for east, north in ((0.0, 0.0), (-20.0, -30.0), (20.0, -45.0), (-109.0, 53.0)):
-        assert height_at(ways, epoch, east, north) == pytest.approx(terrain.ground_z_m(east, north), abs=1e-3)
+        assert footholds[epoch].height_m(east, north) == pytest.approx(terrain.ground_z_m(east, north), abs=1e-3)
 
 
 @pytest.mark.parametrize("epoch", EPOCHS)
@@ -81,10 +89,10 @@ def _solid(monument: Monument, epoch: Epoch) -> shapely.geometry.base.BaseGeomet
     return shapely.affinity.affine_transform(shapely.union_all(solids), [a, b, c, d, x, y])
 
 
-def test_a_visitor_climbs_the_steps_of_the_basilica(site: Site, ways: Scene) -> None:
+def test_a_visitor_climbs_the_steps_of_the_basilica(site: Site, footholds: dict[Epoch, Footholds]) -> None:
     v = np.array([1.0, 2.5, 3.1, 3.7, 4.5, 10.0])
     en = np.column_stack([np.full_like(v, -20.0), v]) @ agora_from_site(site.azimuth_rad)
-    heights = [height_at(ways, "today", float(e), float(n)) for e, n in en]
+    heights = [footholds["today"].height_m(float(e), float(n)) for e, n in en]
     assert None not in heights
     climbed = [h for h in heights if h is not None]
     assert climbed == sorted(climbed)
@@ -92,19 +100,21 @@ def test_a_visitor_climbs_the_steps_of_the_basilica(site: Site, ways: Scene) -> 
     assert climbed[-1] == pytest.approx(0.9, abs=0.01)
 
 
-def test_the_temple_is_climbed_in_the_roman_square_only(ways: Scene) -> None:
+def test_the_temple_is_climbed_in_the_roman_square_only(footholds: dict[Epoch, Footholds]) -> None:
     place = Place.at(-75.73, -16.4, 0.0, np.arctan2(-5.18, 21.59))
     east, north, _ = place.R_site_own @ np.array([1.5, 5.0, 0.0]) + place.origin_m
-    assert height_at(ways, "roman", float(east), float(north)) == pytest.approx(0.9, abs=0.01)
-    assert height_at(ways, "today", float(east), float(north)) is None
-    assert height_at(ways, "roman", -63.2, -11.9) is None  # the cella
+    assert footholds["roman"].height_m(float(east), float(north)) == pytest.approx(0.9, abs=0.01)
+    assert footholds["today"].height_m(float(east), float(north)) is None
+    assert footholds["roman"].height_m(-63.2, -11.9) is None  # the cella
 
 
 @pytest.mark.parametrize("epoch", EPOCHS)
-def test_one_can_stand_at_every_stop_and_on_every_way(site: Site, ways: Scene, epoch: Epoch) -> None:
+def test_one_can_stand_at_every_stop_and_on_every_way(
+    site: Site, footholds: dict[Epoch, Footholds], epoch: Epoch
+) -> None:
     for stop in site.tour:
-        assert height_at(ways, epoch, stop.e_m, stop.n_m) is not None, stop.id
-    assert all(height_at(ways, epoch, e, n) is not None for way in site.ways for e, n in way)
+        assert footholds[epoch].height_m(stop.e_m, stop.n_m) is not None, stop.id
+    assert all(footholds[epoch].height_m(e, n) is not None for way in site.ways for e, n in way)
 
 
 @pytest.mark.parametrize("epoch", EPOCHS)

@@ -6,13 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from assets.footholds import Footholds
 from assets.gltf import Scene
 from assets.occluders import occluders
 from assets.roman import build_roman
 from assets.site import Site, load_site
 from assets.terrain import build_terrain
 from assets.today import build_today
-from assets.walkable import height_at, walkable
+from assets.walkable import walkable
 from server.site_facts import site_facts
 from server.site_tour import tour_of
 from tracker.estimator import Origin
@@ -51,8 +52,10 @@ def test_its_ruins_stand_and_hide(field: Site, ruins: Scene) -> None:
 def test_it_is_walked_on(field: Site) -> None:
     ways, terrain = walkable(field), build_terrain(field)
     for east, north in field.ways[0]:
-        assert height_at(ways, "today", east, north) == pytest.approx(terrain.ground_z_m(east, north), abs=1e-3)
-    assert height_at(ways, "roman", 0.0, 0.0) is None  # the cella
+        assert Footholds.of(ways, "today").height_m(east, north) == pytest.approx(
+            terrain.ground_z_m(east, north), abs=1e-3
+        )
+    assert Footholds.of(ways, "roman").height_m(0.0, 0.0) is None  # the cella
 
 
 def test_a_page_can_show_it(field: Site) -> None:
