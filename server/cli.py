@@ -21,7 +21,6 @@ from assets.errors import AssetError
 from assets.site import Site, load_site
 from server.errors import ServerError
 from tracker.errors import InputError
-from tracker.estimator import Origin
 from tracker.estimators import ESTIMATORS, check_name
 from tracker.fuzzy import INDICES, LEVELS, NEXT_INDEX, rules_by_name
 
@@ -52,6 +51,12 @@ Anchor = Annotated[
 Height = Annotated[
     Literal["ground", "gps"], typer.Option(help="Where the eyes are: on the ground's model, or where the GPS says.")
 ]
+Eyes = Annotated[
+    float | None,
+    typer.Option(
+        "--eye-height", min=0.5, max=2.5, help="Of the rig above the ground, metres.", show_default="the site's own"
+    ),
+]
 Port = Annotated[int, typer.Option(min=0, max=65535, help="Port on this machine; 0 takes a free one.")]
 Browser = Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page.")]
 SiteFolder = Annotated[Path, typer.Option("--site", help="The folder of the site.", show_default="the State Agora")]
@@ -62,12 +67,13 @@ def demo(
     estimator: EstimatorName = None,
     anchor: Anchor = "site",
     height: Height = "ground",
+    eyes: Eyes = None,
     port: Port = 8470,
     browser: Browser = True,
     site: SiteFolder = SITE,
 ) -> None:
     """Play the recorded walk that comes with Agora as AR in a browser, again and again; ctrl-C ends it."""
-    _show(DEMO_LOG, estimator, anchor, height, port, browser, site, looping=True)
+    _show(DEMO_LOG, estimator, anchor, height, port, browser, _site(site, eyes), looping=True)
 
 
 @app.command()
@@ -76,13 +82,14 @@ def replay(
     estimator: EstimatorName = None,
     anchor: Anchor = "site",
     height: Height = "ground",
+    eyes: Eyes = None,
     port: Port = 8470,
     browser: Browser = True,
     loop: Annotated[bool, typer.Option("--loop", help="Begin again at the end.")] = False,
     site: SiteFolder = SITE,
 ) -> None:
     """Play a recorded walk as AR in a browser; ctrl-C ends it."""
-    _show(log, estimator, anchor, height, port, browser, site, looping=loop)
+    _show(log, estimator, anchor, height, port, browser, _site(site, eyes), looping=loop)
 
 
 def _show(
@@ -92,7 +99,7 @@ def _show(
     height: Literal["ground", "gps"],
     port: int,
     browser: bool,
-    site_folder: Path,
+    site: Site,
     *,
     looping: bool,
 ) -> None:
@@ -101,7 +108,6 @@ def _show(
     from server.showing import Showing
     from tracker.log import Log
 
-    site = load_site(site_folder)
     if estimator is not None:
         check_name(estimator)
     log = Log.open(path)
@@ -146,6 +152,12 @@ def evaluate(
     report: Annotated[
         Path | None, typer.Option(help="Write tables and figures here, as index.html and files.", metavar="DIR")
     ] = None,
+    ground: Annotated[
+        bool,
+        typer.Option("--ground", help="The walks were on the site's ground as it is modelled: precise measures by it."),
+    ] = False,
+    eyes: Eyes = None,
+    site: SiteFolder = SITE,
 ) -> None:
     """Measure estimators on recorded walks: the paper's filter error, and the error against truth where there is one."""
     import cv2
@@ -155,7 +167,7 @@ def evaluate(
     from server.plots.trace import Trace, trace_of
     from server.settings import choose
 
-    settings = choose(change or ())
+    settings, place = choose(change or ()), _site(site, eyes)
     traces: list[Trace] = []
     cv2.setNumThreads(1)  # a rig has other work for its cores, and figures should not depend on how many there are
     with _progress("evaluating") as bar:
@@ -167,13 +179,14 @@ def evaluate(
             lambda label, done: bar.update(task, description=label, completed=done),
             settings,
             (lambda result: traces.append(trace_of(result))) if report is not None else (lambda result: None),
+            place if ground else None,
         )
     if json_file is not None:
         write_json(evaluation, json_file)
     if report is not None:
         from server.report import report_of, write_report  # late: matplotlib takes a second
 
-        page = write_report(report_of(evaluation, traces, load_site(SITE)), report)
+        page = write_report(report_of(evaluation, traces, place), report)
         err.print(f"agora: the report is {page}", soft_wrap=True)
     wide = out if out.is_terminal else Console(highlight=False, width=170)
     print_table(evaluation, wide)
@@ -200,6 +213,7 @@ def simulate(
     from assets.today import build_today
     from server.simulation import write_walk
     from server.site_tour import tour_of
+    from server.standing import origin_of
     from tracker.choreography import DATASET_DURATION_S
     from tracker.simulate import DEMO_WALK, WalkSettings
 
@@ -214,7 +228,7 @@ def simulate(
         seed=seed,
         duration_s=duration or base.duration_s,
         tour=tour_of(place),
-        origin=_origin(place),
+        origin=origin_of(place),
         eye_height_m=place.eye_height_m,
     )
     with _progress("simulating") as bar:
@@ -280,8 +294,9 @@ def settings() -> None:
     out.print("The end of a name is enough: agora evaluate LOG --set m_P=literal_enu", style="dim")
 
 
-def _origin(site: Site) -> Origin:
-    return Origin(site.origin.lat_deg, site.origin.lon_deg, site.origin.h_ellipsoid_m)
+def _site(folder: Path, eye_height_m: float | None) -> Site:
+    site = load_site(folder)
+    return site if eye_height_m is None else replace(site, eye_height_m=eye_height_m)
 
 
 @contextmanager

@@ -9,12 +9,15 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from assets.site import LANGUAGE, Site
 from server.settings import changes
+from server.standing import FAR_M, distance_m, eye_heights, origin_of
 from server.tables import lookup, without_filter_error
 from tracker.errors import InputError, MissingSensor
 from tracker.estimators import ESTIMATORS, Settings, check_name, missing_sensors
-from tracker.evaluate import Run, figures, run
+from tracker.evaluate import Run, figures, log_origin, run
 from tracker.log import Log
+from tracker.precise.ground import EyeHeight
 from tracker.score import Figures
 
 Progress = Callable[[str, float], None]
@@ -38,6 +41,7 @@ def evaluate(
     progress: Progress,
     settings: Settings | None = None,
     each: Callable[[Run], None] = lambda result: None,
+    ground: Site | None = None,
 ) -> Evaluation:
     """Run every log through every estimator (none named: all) that its sensors allow.
 
@@ -48,21 +52,31 @@ def evaluate(
         progress: Called with what is being done, and the share of it that is.
         settings: None for the defaults.
         each: Given every run as it ends, for what needs more of it than its figures.
+        ground: The site on whose ground the walks were; None where no ground is known.
 
     Raises:
-        InputError: A log cannot be read, an estimator does not exist, or nothing could be run.
+        InputError: A log cannot be read or was not on that ground, an estimator does not exist, or nothing could be run.
     """
     for name in estimators:
         check_name(name)
     evaluation = Evaluation(settings=changes(settings or Settings()))
+    if ground is not None:
+        evaluation.settings["ground"] = ground.id
     for log in [Log.open(path) for path in paths]:
+        eyes_z_m = _eye_heights(log, ground) if ground is not None else None
         for name in estimators or ESTIMATORS:
             reason = missing_sensors(name, log.info, log.rig)
             if reason is not None:
                 evaluation.missing.append({"log": log.name, "estimator": name, "missing": reason})
                 continue
             label = f"{log.name}  {name}"
-            result = run(log, name, settings, progress=lambda done, label=label: progress(label, done))  # type: ignore[misc]
+            result = run(
+                log,
+                name,
+                settings,
+                progress=lambda done, label=label: progress(label, done),  # type: ignore[misc]
+                eyes_z_m=eyes_z_m,
+            )
             evaluation.runs.append(figures(result))
             each(result)
             if poses is not None:
@@ -71,6 +85,14 @@ def evaluate(
         reasons = "; ".join(f"{m['log']} has {m['missing']} for {m['estimator']}" for m in evaluation.missing)
         raise MissingSensor(f"Nothing could be run: {reasons}.")
     return evaluation
+
+
+def _eye_heights(log: Log, site: Site) -> EyeHeight:
+    fix = log.info.first_fix
+    if fix is None or (away_m := distance_m(fix, origin_of(site))) > FAR_M:
+        where = "has no GPS" if fix is None else f"was recorded {away_m / 1000.0:,.0f} km from {site.name[LANGUAGE]}"
+        raise InputError(f"{log.name} {where}: evaluate it without --ground.")
+    return eye_heights(site, log_origin(log))
 
 
 def write_json(evaluation: Evaluation, path: Path) -> None:

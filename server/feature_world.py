@@ -11,8 +11,8 @@ from assets.site import Site
 from assets.terrain import build_terrain
 from assets.today import build_today
 from server.site_tour import tour_of
+from server.standing import origin_of
 from tracker.choreography import DATASET_DURATION_S
-from tracker.estimator import Origin
 from tracker.simulate import Walk, WalkSettings, default_rig
 
 FOLDER = Path("build/corners")
@@ -41,7 +41,7 @@ def dataset_walk(site: Site, dataset: int, seed: int) -> Walk:
             seed=seed,
             duration_s=DATASET_DURATION_S[dataset],
             tour=tour_of(site),
-            origin=Origin(site.origin.lat_deg, site.origin.lon_deg, site.origin.h_ellipsoid_m),
+            origin=origin_of(site),
             eye_height_m=site.eye_height_m,
         ),
     )

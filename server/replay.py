@@ -8,26 +8,26 @@ from typing import Literal
 from server.console import Console
 from server.messages import ControlReply, ControlRequest
 from server.push import RigLink, frame_message, pose_message
+from server.standing import FAR_M, distance_m
 from tracker.blank import CAMERA, BlankCamera
 from tracker.errors import InputError, MalformedInput
 from tracker.estimator import Origin, Pose
-from tracker.estimators import DEFAULT_ESTIMATOR, ESTIMATORS, missing_sensors
+from tracker.estimators import DEFAULT_ESTIMATOR, ESTIMATORS, PRECISE, missing_sensors
 from tracker.evaluate import make_pipeline
-from tracker.geodesy import SiteFrame
 from tracker.geometry import transform
 from tracker.grounding import GroundHeight, on_ground
+from tracker.levelled import Levelled
 from tracker.log import Log
 from tracker.measurements import Frame
 from tracker.pipeline import Pipeline
 from tracker.playback import Playback, Recording, Shown
+from tracker.precise.ground import EyeHeight
 from tracker.rig import CameraModel, Rig
 from tracker.runner import Player, PlayerState, ReadAhead, VisionThread
 from tracker.upright import Upright
 
 #: The best first: what plays when nothing was chosen.
 PREFERENCE = (DEFAULT_ESTIMATOR, "gps-imu/precise", "truth")
-#: A walk that begins further than this from the site was recorded elsewhere.
-FAR_M = 3_000.0
 #: Where a camera's intrinsics are unknown: a usual webcam, 60 degrees wide.
 _GUESSED_FOCAL = 0.87
 
@@ -53,17 +53,27 @@ class Replay:
         *,
         site_origin: Origin,
         ground_z_m: GroundHeight,
+        eyes_z_m: EyeHeight,
         eye_height_m: float,
         console: Console | None = None,
     ) -> None:
         """Prepare a replay; `start` starts it.
+
+        Args:
+            log: What is played.
+            settings: How.
+            site_origin: Where the site is.
+            ground_z_m: The ground's height everywhere about it, onto which poses are put.
+            eyes_z_m: Height of the eyes where one can stand, for estimators that measure by it.
+            eye_height_m: Of the eyes above the ground.
+            console: The operator's, if there is one.
 
         Raises:
             UnknownEstimator, MissingSensor: The estimator cannot run on this log.
             MissingSensor: No estimator can.
         """
         self._log, self._settings, self._console = log, settings, console
-        self._ground_z_m, self._eye_height_m = ground_z_m, eye_height_m
+        self._ground_z_m, self._eyes_z_m, self._eye_height_m = ground_z_m, eyes_z_m, eye_height_m
         self._origin = self._anchor(site_origin)
         self._rig = _display_rig(log)
         self._vision: VisionThread | None = None
@@ -98,7 +108,10 @@ class Replay:
         return next((name for name in placed if missing_sensors(name, info, rig) is None), "gps-imu/famm")
 
     def _make_pipeline(self, name: str) -> Pipeline:
-        pipeline = make_pipeline(name, self._log, self._origin)
+        eyes_z_m = self._eyes_z_m if self._measures_ground(name) else None
+        pipeline = make_pipeline(name, self._log, self._origin, eyes_z_m=eyes_z_m)
+        if self._settings.anchor == "here":
+            pipeline.estimator = Levelled(pipeline.estimator, self._eye_height_m)
         if self._vision is not None:
             self._vision.close()
             self._vision = None
@@ -108,6 +121,12 @@ class Replay:
         if self._console is not None:
             self._console.clear()
         return pipeline
+
+    def _measures_ground(self, estimator: str) -> bool:
+        """Whether the estimator itself asks for the ground. Where the walk was elsewhere, the site's is not what was walked on."""
+        return (
+            estimator.endswith(f"/{PRECISE}") and self._settings.anchor == "site" and self._settings.height == "ground"
+        )
 
     def start(self, rig_url: str, token: str) -> None:
         """Connect to the server and play."""
@@ -151,12 +170,8 @@ class Replay:
         info, fix = self._log.info, self._log.info.first_fix
         if info.truncated:
             return f"The recording breaks off after {info.duration_s:.0f} s; it plays to there."
-        if self._settings.anchor == "site" and fix is not None:
-            x, y, _ = SiteFrame(self._origin).site_from_geodetic(fix.lat_deg, fix.lon_deg, fix.h_ellipsoid_m)
-            if (distance_m := (x * x + y * y) ** 0.5) > FAR_M:
-                return (
-                    f"This walk was recorded {distance_m / 1000.0:,.0f} km from the site: replay it with --anchor here."
-                )
+        if self._settings.anchor == "site" and fix is not None and (away_m := distance_m(fix, self._origin)) > FAR_M:
+            return f"This walk was recorded {away_m / 1000.0:,.0f} km from the site: replay it with --anchor here."
         if not info.counts["frames"]:
             return "This walk has no camera: the square is drawn over an empty picture."
         if self._log.rig.camera is None:
@@ -192,7 +207,7 @@ class Replay:
             self._console.show(T_site_cam, self._rig.camera, pose.motion_model)
 
     def _placed(self, pose: Pose | None, estimator: str) -> Pose | None:
-        if pose is None or estimator == "truth" or self._settings.height == "gps":
+        if pose is None or estimator == "truth" or self._settings.height == "gps" or self._measures_ground(estimator):
             return pose
         return on_ground(pose, self._ground_z_m, self._eye_height_m)
 

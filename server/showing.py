@@ -13,9 +13,9 @@ from server.errors import ConsoleUnavailable
 from server.replay import Replay, ReplaySettings
 from server.sessions import session_name
 from server.site_facts import site_facts
+from server.standing import eye_heights, origin_of
 from server.web_server import WebServer
 from tracker.errors import InputError
-from tracker.estimator import Origin
 from tracker.log import Log
 
 
@@ -35,8 +35,9 @@ class Showing:
         self._replay = Replay(
             log,
             settings,
-            site_origin=Origin(site.origin.lat_deg, site.origin.lon_deg, site.origin.h_ellipsoid_m),
+            site_origin=origin_of(site),
             ground_z_m=terrain.ground_z_m,
+            eyes_z_m=eye_heights(site),
             eye_height_m=site.eye_height_m,
             console=self._console,
         )

@@ -20,6 +20,7 @@ from tracker.motion import (
 from tracker.paper import PaperEstimator, PaperSettings
 from tracker.precise.compass import Compass
 from tracker.precise.estimator import PreciseEstimator
+from tracker.precise.ground import EyeHeight
 from tracker.precise.settings import PreciseSettings
 from tracker.rig import Rig
 from tracker.truth import TruthEstimator
@@ -74,6 +75,7 @@ def build(
     truth_origin: Origin | None = None,
     settings: Settings | None = None,
     earth_field: MagneticField | None = None,
+    eyes_z_m: EyeHeight | None = None,
 ) -> Estimator:
     """Return a new estimator.
 
@@ -85,6 +87,7 @@ def build(
         truth_origin: Where the log's map frame is laid; None where it is the site's.
         settings: None for the defaults.
         earth_field: What a magnetometer should measure there; None where nobody knows, and then every field is believed.
+        eyes_z_m: Height of the rig in site where it stands on the ground, which `precise` asks for; None where no ground is known.
 
     Raises:
         UnknownEstimator: No estimator has that name.
@@ -102,6 +105,7 @@ def build(
             compass=Compass(declination_rad, earth_field),
             uses_camera=uses_camera,
             settings=settings.precise,
+            eyes_z_m=eyes_z_m,
         )
     return PaperEstimator(
         name,

@@ -19,6 +19,7 @@ from tracker.log import Log
 from tracker.measurements import Frame, GpsFix, ImuSample, Matrix, Measurement, Outcome, TruePose
 from tracker.paper import PaperEstimator
 from tracker.pipeline import Pipeline
+from tracker.precise.ground import EyeHeight
 from tracker.score import Figures
 from tracker.vision import VisionFrontEnd
 
@@ -59,8 +60,17 @@ def log_origin(log: Log) -> Origin:
     return Origin(0.0, 0.0, 0.0)
 
 
-def make_pipeline(name: str, log: Log, origin: Origin, settings: Settings | None = None) -> Pipeline:
+def make_pipeline(
+    name: str, log: Log, origin: Origin, settings: Settings | None = None, eyes_z_m: EyeHeight | None = None
+) -> Pipeline:
     """Return a new pipeline for a log.
+
+    Args:
+        name: One of `ESTIMATORS`.
+        log: An opened log.
+        origin: Where the site frame is laid.
+        settings: None for the defaults.
+        eyes_z_m: Height of the rig in that frame where it stands on the ground; None where no ground is known.
 
     Raises:
         UnknownEstimator: No estimator has that name.
@@ -78,6 +88,7 @@ def make_pipeline(name: str, log: Log, origin: Origin, settings: Settings | None
         earth_field=earth,
         truth_origin=log.info.truth_origin,
         settings=settings,
+        eyes_z_m=eyes_z_m,
     )
     camera = log.rig.camera
     return Pipeline(estimator, VisionFrontEnd(camera) if camera and estimator.uses_camera else None)
@@ -89,6 +100,7 @@ def run(
     settings: Settings | None = None,
     progress: Callable[[float], None] = lambda done: None,
     origin: Origin | None = None,
+    eyes_z_m: EyeHeight | None = None,
 ) -> Run:
     """Run a log through an estimator.
 
@@ -98,12 +110,13 @@ def run(
         settings: None for the defaults.
         progress: Called now and then with the share of the log that is done.
         origin: Where the site frame is laid; None for the log's own (`log_origin`).
+        eyes_z_m: See `make_pipeline`.
 
     Raises:
         UnknownEstimator, MissingSensor: See `make_pipeline`.
     """
     origin = origin or log_origin(log)
-    pipeline = make_pipeline(name, log, origin, settings)
+    pipeline = make_pipeline(name, log, origin, settings, eyes_z_m)
     info = log.info
     result = Run(log.name, name, info.t_start_ns, info.duration_s, origin, info.truth_origin)
     follow(pipeline, log.messages(camera=pipeline.estimator.uses_camera), result, progress)

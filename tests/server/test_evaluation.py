@@ -10,9 +10,12 @@ from evo.tools import file_interface
 from rich.console import Console
 from typer.testing import CliRunner
 
-from server.cli import app
+from assets.site import load_site
+from server.cli import SITE, app
 from server.evaluation import Evaluation, evaluate, print_table, write_json
+from tests.walks import write_walk
 from tracker.errors import InputError, MalformedInput, MissingSensor, UnknownEstimator
+from tracker.estimator import Origin
 from tracker.log_writer import LogWriter
 from tracker.measurements import ImuSample
 from tracker.simulate import AGORA_ORIGIN, START_NS, Walk, WalkSettings, default_rig, simulate
@@ -68,6 +71,24 @@ def test_centimetres_in_the_table_metres_in_the_json(walk: Path) -> None:
     jitter_m = evaluation.runs[0]["truth"]["jitter_rms_m"]
     assert 0.0 < jitter_m < 1.0
     assert f" {100.0 * jitter_m:.1f} " in _printed(evaluation)
+
+
+def test_on_the_ground_of_the_site_heights_are_known_to_centimetres(walk: Path, tmp_path: Path) -> None:
+    """The simulated walk is on level paving; another visitor's eyes are higher; a walk from elsewhere knows no such ground."""
+    command = ["evaluate", str(walk), "--estimator", "gps-imu/precise", "--json", str(tmp_path / "x.json")]
+
+    def height_m(*arguments: str) -> float:
+        assert CliRunner().invoke(app, [*command, *arguments]).exit_code == 0
+        found = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))
+        assert found["settings"] == ({"ground": "state_agora"} if arguments else {})
+        return float(found["runs"][0]["truth"]["height_rmse_m"])
+
+    assert height_m() > 0.3
+    assert height_m("--ground") < 0.05
+    assert height_m("--ground", "--eye-height", "1.85") == pytest.approx(0.2, abs=0.05)
+    far = write_walk(tmp_path / "far.mcap", 3.0, origin=Origin(-43.5, 172.6, 20.0))
+    with pytest.raises(InputError, match=r"far was recorded 17,\d{3} km from .*: evaluate it without --ground"):
+        evaluate([far], ("gps-imu/precise",), None, _nothing, ground=load_site(SITE))
 
 
 def test_a_changed_setting_changes_the_figures_and_is_written_down(walk: Path, tmp_path: Path) -> None:

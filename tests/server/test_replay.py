@@ -103,7 +103,14 @@ def watching(path: Path, settings: ReplaySettings, folder: Path) -> Iterator[Wat
 
 
 def replay_of(path: Path, settings: ReplaySettings) -> Replay:
-    return Replay(Log.open(path), settings, site_origin=AGORA_ORIGIN, ground_z_m=lambda e, n: 0.25, eye_height_m=EYES_M)
+    return Replay(
+        Log.open(path),
+        settings,
+        site_origin=AGORA_ORIGIN,
+        ground_z_m=lambda e, n: 0.25,
+        eyes_z_m=lambda e, n: 0.25 + EYES_M,
+        eye_height_m=EYES_M,
+    )
 
 
 def test_every_frame_carries_the_pose_of_its_own_picture(wall: Path, tmp_path: Path) -> None:
@@ -214,6 +221,27 @@ def test_anchored_here_the_walk_begins_at_the_origin_with_its_feet_on_the_ground
         height_m = first.T_site_cam[2, 3] - ground_z_m(*first.T_site_cam[:2, 3])
         assert height_m == pytest.approx(EYES_M, abs=0.1)
         assert "camera" in watcher.session["notice"]
+
+
+def test_anchored_here_the_truth_too_begins_one_eye_height_above_the_paving(tmp_path: Path) -> None:
+    """A receiver's first height is off by metres; the walk's own ups and downs stay."""
+    path = write_walk(tmp_path / "christchurch.mcap", 6.0, origin=ELSEWHERE)
+    settings = ReplaySettings(estimator="truth", anchor="here", height="gps", looping=True)
+    with watching(path, settings, tmp_path) as watcher:
+        heights_m = [meta.T_site_cam[2, 3] for meta in watcher.frames(20) if meta.pose_valid]
+        assert heights_m == pytest.approx([EYES_M] * len(heights_m), abs=0.15)
+        assert len(heights_m) > 5
+
+
+def test_the_precise_estimator_measures_by_the_ground_itself(wall: Path, tmp_path: Path) -> None:
+    """Its height is known to decimetres and has a velocity, which a pose that is put onto the ground has not."""
+    with watching(wall, ReplaySettings("gps-imu/precise", looping=True), tmp_path) as watcher:
+        posed = [meta for meta in watcher.frames(50) if meta.pose_valid]
+    last = posed[-1]
+    ground_z_m = build_terrain(load_site(SITE)).ground_z_m
+    assert last.T_site_cam[2, 3] - ground_z_m(*last.T_site_cam[:2, 3]) == pytest.approx(EYES_M, abs=0.1)
+    assert last.cov[2, 2] < 0.3**2
+    assert all(meta.v_site_m_s[2] != 0.0 for meta in posed)
 
 
 def test_a_name_that_a_session_cannot_have_is_made_into_one(tmp_path: Path) -> None:
