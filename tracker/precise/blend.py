@@ -2,9 +2,11 @@
 
 from math import exp, hypot
 
+import numpy as np
+
 from tracker.geometry import conjugate, log, multiply, normalise
 from tracker.geometry import exp as rotation_exp
-from tracker.measurements import Vector3
+from tracker.measurements import Matrix, Vector3
 from tracker.precise.navigation import Navigation
 
 #: Corrections larger than these are shown at once: the filter has begun anew, and a long slide would be a second error.
@@ -13,39 +15,54 @@ _ZERO: Vector3 = (0.0, 0.0, 0.0)
 
 
 class Blend:
-    """What is still to be faded in: an offset from the filter's state to what is shown, which decays."""
+    """What is still to be faded in: an offset, at the filter's own time, from its state to the one that is shown.
 
-    def __init__(self, time_s: float) -> None:
-        self._time_s = time_s
+    Kept at the filter's time it does not depend on when a measurement arrived, only on when it was made.
+    """
+
+    def __init__(self, time_s: float, lag_s: float) -> None:
+        """`time_s` is that of the decay, `lag_s` how far behind what is shown the filter is."""
+        self._time_s, self._lag_s = time_s, lag_s
         self._t_ns = 0
-        self._p_m = _ZERO
-        self._turn_rad = _ZERO
+        self._p_m = self._v_m_s = self._turn_rad = _ZERO
 
     def corrected(self, before: Navigation, after: Navigation) -> None:
         """Take what the state at one time was before and after a correction."""
-        keep = self._left(after.t_ns)
-        p = _sum(_scaled(self._p_m, keep), _sum(before.p_m, _scaled(after.p_m, -1.0)))
-        turn = _sum(
-            _scaled(self._turn_rad, keep), log(multiply(before.wxyz_site_body, conjugate(after.wxyz_site_body)))
-        )
-        p = p if hypot(*p) <= _LARGEST_M else _ZERO
-        turn = turn if hypot(*turn) <= _LARGEST_RAD else _ZERO
-        self._t_ns, self._p_m, self._turn_rad = after.t_ns, p, turn
+        keep = self._left((after.t_ns - self._t_ns) * 1e-9)
+        p = _sum(_scaled(self._p_m, keep), _difference(before.p_m, after.p_m))
+        v = _sum(_scaled(self._v_m_s, keep), _difference(before.v_m_s, after.v_m_s))
+        turned = log(multiply(before.wxyz_site_body, conjugate(after.wxyz_site_body)))
+        turn = _sum(_scaled(self._turn_rad, keep), turned)
+        self._p_m, self._v_m_s = (p, v) if hypot(*p) <= _LARGEST_M else (_ZERO, _ZERO)
+        self._turn_rad = turn if hypot(*turn) <= _LARGEST_RAD else _ZERO
+        self._t_ns = after.t_ns
 
-    def shown(self, nav: Navigation) -> Navigation:
-        """Return the state as it is to be shown."""
-        keep = self._left(nav.t_ns)
+    def shown(self, nav: Navigation, t_ns: int) -> Navigation:
+        """Return the state, at its own time, that is to be carried on and shown at t_ns."""
+        keep = self._left((t_ns - self._t_ns) * 1e-9 - self._lag_s)
         turn = rotation_exp(_scaled(self._turn_rad, keep))
-        return nav._replace(
-            p_m=_sum(nav.p_m, _scaled(self._p_m, keep)), wxyz_site_body=normalise(multiply(turn, nav.wxyz_site_body))
+        return Navigation(
+            nav.t_ns,
+            _sum(nav.p_m, _scaled(self._p_m, keep)),
+            _sum(nav.v_m_s, _scaled(self._v_m_s, keep)),
+            normalise(multiply(turn, nav.wxyz_site_body)),
         )
 
-    def _left(self, t_ns: int) -> float:
-        return exp(-max(0.0, (t_ns - self._t_ns) * 1e-9) / self._time_s)
+    def offset(self, t_ns: int) -> Matrix:
+        """Return how far what is shown at t_ns is from the filter's state, (9,): position, velocity and rotation, site axes."""
+        keep = self._left((t_ns - self._t_ns) * 1e-9 - self._lag_s)
+        return keep * np.array((*self._p_m, *self._v_m_s, *self._turn_rad))
+
+    def _left(self, after_s: float) -> float:
+        return exp(-max(0.0, after_s) / self._time_s)
 
 
 def _sum(a: Vector3, b: Vector3) -> Vector3:
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
+
+
+def _difference(a: Vector3, b: Vector3) -> Vector3:
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
 def _scaled(a: Vector3, by: float) -> Vector3:

@@ -1,12 +1,11 @@
 """`precise`: measurements in, poses out. What a sensor says is applied when it was measured, however late it came."""
 
 from copy import deepcopy
-from math import hypot, isfinite
+from math import isfinite
 
 import numpy as np
 
 from tracker.estimator import Innovation, Origin, Pose, Snapshot
-from tracker.fixes import FASTEST_M_S
 from tracker.geodesy import SiteFrame, gravity_m_s2
 from tracker.measurements import (
     CompassHeading,
@@ -21,24 +20,28 @@ from tracker.measurements import (
     Standpoint,
     VisualMotion,
 )
+from tracker.precise.admission import LEAP_NS, Admission
 from tracker.precise.blend import Blend
 from tracker.precise.compass import Compass
-from tracker.precise.engine import Engine, EyeHeight
-from tracker.precise.error_state import ErrorState
-from tracker.precise.navigation import Biases, Navigation, advance, carried, mean
+from tracker.precise.engine import Engine
+from tracker.precise.error_model import inertial_transition
+from tracker.precise.free import FreeIntegral
+from tracker.precise.ground import EyeHeight
+from tracker.precise.navigation import Navigation
+from tracker.precise.refusal import refusal
 from tracker.precise.settings import PreciseSettings
-from tracker.precise.timeline import Keyframe, Timeline
+from tracker.precise.timeline import Keyframe, Timed, Timeline
 from tracker.rig import Rig
 
 _KINDS = (ImuSample, MagSample, CompassHeading, GpsFix, GpsVelocity, VisualMotion, Sighting, Standpoint)
-#: A stamp that is ahead of its arrival by more than this is a clock that leapt.
-_FASTEST_CLOCK_NS = 2_000_000_000
-#: A prediction goes on with the last rates at most this long, and turns on for the first part of it.
-_LONGEST_PREDICTION_S, _LONGEST_TURN_S = 1.0, 0.1
+#: Further ahead of the newest inertial sample than this, nothing is known.
+_LONGEST_PREDICTION_NS = 1_000_000_000
+#: What a head may do after the newest inertial sample: standard deviations of what adds to its motion then.
+_UNFORESEEN_M_S2, _UNFORESEEN_RAD_S2 = 3.0, 3.0
 #: A receiver that has told no position for this long may not be there: attitude alone is better than nothing.
 _WAIT_FOR_FIX_S = 3.0
-#: States of the free integral are kept for predictions of the recent past.
-_KEPT_S = 2.0
+#: Position and rotation among the inertial states, and so in a pose.
+_POSE = np.array([0, 1, 2, 6, 7, 8])
 
 
 class PreciseEstimator:
@@ -59,11 +62,17 @@ class PreciseEstimator:
         self._name, self._uses_camera = name, uses_camera
         self._settings = settings or PreciseSettings()
         self._gravity = gravity_m_s2(origin.lat_deg, origin.h_ellipsoid_m)
+        self._lag_ns = round(self._settings.lag_s * 1e9)
+        self._site, self._rig, self._compass, self._eyes_z_m = SiteFrame(origin), rig, compass, eyes_z_m
+        self._admission = Admission(self._site)
+        self._begin()
+
+    def _begin(self) -> None:
         self._timeline = Timeline()
-        self._engine = Engine(self._settings, SiteFrame(origin), rig, compass, self._gravity, eyes_z_m)
-        self._blend = Blend(self._settings.blend_s)
-        self._free: list[tuple[Navigation, ImuSample]] = []
-        """The strapdown integral that no measurement corrects, and the sample that ended each step."""
+        compass = deepcopy(self._compass)
+        self._engine = Engine(self._settings, self._site, self._rig, compass, self._gravity, self._eyes_z_m)
+        self._blend = Blend(self._settings.blend_s, self._settings.lag_s)
+        self._free = FreeIntegral(self._gravity, self._lag_ns)
 
     @property
     def name(self) -> str:
@@ -81,9 +90,14 @@ class PreciseEstimator:
         """Take one measurement in order of arrival."""
         if not isinstance(measurement, _KINDS) or (isinstance(measurement, VisualMotion) and not self._uses_camera):
             return Outcome.IGNORED
-        refused = _refusal(measurement)
+        refused = refusal(measurement)
         if refused is not None:
             return refused
+        newest_ns = self._timeline.newest_ns
+        if newest_ns is not None and self._admission.refuses(measurement, newest_ns):
+            return Outcome.REJECTED_GATE
+        if isinstance(measurement, ImuSample) and newest_ns is not None and measurement.t_ns > newest_ns + LEAP_NS:
+            self._begin()  # nobody knows what the rig has done in between
         if not self._timeline.add(measurement):
             return Outcome.REJECTED_STALE
         if isinstance(measurement, VisualMotion):
@@ -91,112 +105,66 @@ class PreciseEstimator:
             if measurement.is_keyframe:
                 self._timeline.add(Keyframe(measurement.t_ns))
         if isinstance(measurement, ImuSample):
-            self._integrate(measurement)
+            self._free.add(measurement)
             self._catch_up()
         return Outcome.USED if self._engine.hypotheses is not None else Outcome.WAITING
 
     def _catch_up(self) -> None:
-        newest_ns, timeline, engine = self._timeline.newest_ns, self._timeline, self._engine
-        if newest_ns is None:
+        last_ns = None
+        for measurement, following in self._timeline.take(self._free.newest_ns - self._lag_ns):
+            self._take(measurement, following)
+            if isinstance(measurement, ImuSample):
+                last_ns = measurement.t_ns
+            if measurement.t_ns == last_ns and self._engine.hypotheses is not None:
+                self._free.learn(last_ns, self._engine.best.biases)
+        if last_ns is not None and self._engine.hypotheses is not None and not _is_finite(self._engine.best.nav):
+            self._begin()
+
+    def _take(self, measurement: Timed, following: ImuSample | None) -> None:
+        """Let the engine take a measurement; where that corrects it, what is shown goes on from where it was."""
+        engine = self._engine
+        if engine.hypotheses is None:
+            engine.take(measurement, following)
             return
-        taken = timeline.take(newest_ns - round(self._settings.lag_s * 1e9))
-        if not taken:
-            return
-        before = engine.best.nav if engine.hypotheses is not None else None
-        corrections = engine.hypotheses.corrections if engine.hypotheses is not None else 0
-        for measurement in taken:
-            engine.take(measurement, timeline.imu[0] if timeline.imu else None)
-        if before is not None and engine.hypotheses is not None and engine.hypotheses.corrections != corrections:
-            self._blend.corrected(self._carried(before, newest_ns), self._carried(engine.best.nav, newest_ns))
-
-    def _integrate(self, sample: ImuSample) -> None:
-        """Carry the free integral on; a sample that came late has it done again from there."""
-        free = self._free
-        late = [sample]
-        while free and free[-1][0].t_ns >= sample.t_ns:
-            late.append(free.pop()[1])
-        for one in sorted(late, key=lambda s: s.t_ns):
-            free.append((self._next(one), one))
-        while free[-1][0].t_ns - free[0][0].t_ns > _KEPT_S * 1e9:
-            del free[: len(free) // 4]
-
-    def _next(self, sample: ImuSample) -> Navigation:
-        if not self._free:
-            zero = (0.0, 0.0, 0.0)
-            return Navigation(sample.t_ns, zero, zero, (1.0, 0.0, 0.0, 0.0))
-        nav, last = self._free[-1]
-        gyro, accel = mean(last.gyro_rad_s, sample.gyro_rad_s), mean(last.accel_m_s2, sample.accel_m_s2)
-        return advance(nav, sample.t_ns, gyro, accel, self._biases, self._gravity)
-
-    @property
-    def _biases(self) -> Biases:
-        return self._engine.best.biases if self._engine.hypotheses is not None else Biases()
+        before, corrections, had_place = engine.best.nav, engine.hypotheses.corrections, engine.fix_ns is not None
+        engine.take(measurement, following)
+        after = engine.best.nav
+        if engine.fix_ns is not None and not had_place:
+            self._blend = Blend(self._settings.blend_s, self._settings.lag_s)
+        elif engine.hypotheses.corrections != corrections:
+            self._blend.corrected(self._free.carry(before, after.t_ns), after)
 
     # -- out ----------------------------------------------------------------------------------------------------------
 
     def predict(self, t_ns: int) -> Pose | None:
-        """Return the pose at t_ns."""
-        engine = self._engine
+        """Return the pose at t_ns; None while the filter has none, or where that is too long ago or too far ahead."""
+        engine, free = self._engine, self._free
         if engine.hypotheses is None or (engine.fix_ns is None and engine.age_s < _WAIT_FOR_FIX_S):
             return None
-        best = engine.best
-        nav = self._blend.shown(self._carried(best.nav, t_ns))
-        cov = self._covariance(best, (t_ns - best.nav.t_ns) * 1e-9)
-        if not all(map(isfinite, (*nav.p_m, *nav.wxyz_site_body))) or not np.all(np.isfinite(cov)):
+        if not free.oldest_ns <= t_ns <= free.newest_ns + _LONGEST_PREDICTION_NS:
+            return None
+        start = self._blend.shown(engine.best.nav, t_ns)
+        nav = free.carry(start, t_ns)
+        cov = self._covariance(start, nav)
+        if not _is_finite(nav) or not np.all(np.isfinite(cov)):
             return None
         known = float(cov[5, 5]) < self._settings.heading_known_rad**2
         return Pose(t_ns, nav.p_m, nav.wxyz_site_body, nav.v_m_s, cov, engine.model, known)
 
-    def _carried(self, state: Navigation, t_ns: int) -> Navigation:
-        """Return a state of the filter, carried on to a time by the free integral."""
-        return carried(state, self._free_at(state.t_ns), self._free_at(t_ns), self._gravity)
-
-    def _free_at(self, t_ns: int) -> Navigation:
-        """Return the free integral at a time: between two samples, or carried on after the newest."""
-        free = self._free
-        nav, sample = free[-1]
-        if t_ns >= nav.t_ns:
-            return self._beyond(nav, sample, t_ns)
-        low, high = 0, len(free) - 1
-        while low < high:
-            middle = (low + high) // 2
-            if free[middle][0].t_ns < t_ns:
-                low = middle + 1
-            else:
-                high = middle
-        if free[low][0].t_ns == t_ns or low == 0:
-            return free[low][0]
-        before, after = free[low - 1], free[low]
-        gyro = mean(before[1].gyro_rad_s, after[1].gyro_rad_s)
-        accel = mean(before[1].accel_m_s2, after[1].accel_m_s2)
-        return advance(before[0], t_ns, gyro, accel, self._biases, self._gravity)
-
-    def _beyond(self, nav: Navigation, sample: ImuSample, t_ns: int) -> Navigation:
-        """Go on with the newest rates for a moment, then straight on, then not at all."""
-        ahead_s = min((t_ns - nav.t_ns) * 1e-9, _LONGEST_PREDICTION_S)
-        if ahead_s <= 0.0:
-            return nav
-        turning_s = min(ahead_s, _LONGEST_TURN_S)
-        turned_ns = nav.t_ns + round(turning_s * 1e9)
-        on = advance(nav, turned_ns, sample.gyro_rad_s, sample.accel_m_s2, self._biases, self._gravity)
-        if ahead_s <= turning_s:
-            return on._replace(t_ns=t_ns)
-        # without a force that is known, the velocity is held: seen from a frame that falls freely, it does not change
-        rest_s = ahead_s - turning_s
-        (px, py, pz), (vx, vy, vz) = on.p_m, on.v_m_s
-        return Navigation(t_ns, (px + vx * rest_s, py + vy * rest_s, pz + vz * rest_s), on.v_m_s, on.wxyz_site_body)
-
-    def _covariance(self, best: ErrorState, ahead_s: float) -> Matrix:
-        """Position and rotation of the filter's own time, carried on by what velocity is unsure of."""
-        rows = np.array([0, 1, 2, 6, 7, 8])
-        full = best.covariance
-        cov: Matrix = full[np.ix_(rows, rows)].copy()
-        if ahead_s > 0.0:
-            velocity = full[3:6, 3:6]
-            cross = full[0:3, 3:6]
-            cov[:3, :3] += ahead_s * (cross + cross.T) + ahead_s**2 * velocity
-        assert self._engine.hypotheses is not None
-        cov[5, 5] += max(0.0, self._engine.hypotheses.yaw_variance_rad2 - float(full[8, 8]))
+    def _covariance(self, start: Navigation, end: Navigation) -> Matrix:
+        """Return (6, 6): the filter's at its own time, carried on, with what is still to be faded in and what nobody foresees."""
+        hypotheses = self._engine.hypotheses
+        assert hypotheses is not None
+        best, dt_s = hypotheses.best, (end.t_ns - start.t_ns) * 1e-9
+        gained = np.array(end.v_m_s) - start.v_m_s
+        gained[2] += self._gravity * dt_s
+        Phi = inertial_transition(dt_s, best.R_site_body, gained)[_POSE]
+        offset = Phi[:, :9] @ self._blend.offset(end.t_ns)
+        cov: Matrix = Phi @ best.covariance[:15, :15] @ Phi.T + np.outer(offset, offset)
+        ahead_s = max(0, end.t_ns - self._free.newest_ns) * 1e-9
+        cov[:3, :3] += (0.5 * _UNFORESEEN_M_S2 * ahead_s**2) ** 2 * np.eye(3)
+        cov[3:, 3:] += (0.5 * _UNFORESEEN_RAD_S2 * ahead_s**2) ** 2 * np.eye(3)
+        cov[5, 5] += max(0.0, hypotheses.yaw_variance_rad2 - float(best.covariance[8, 8]))
         return cov
 
     def innovations(self) -> list[Innovation]:
@@ -207,48 +175,12 @@ class PreciseEstimator:
 
     def snapshot(self) -> Snapshot:
         """Return the whole state."""
-        return deepcopy((self._timeline, self._engine, self._blend, self._free))
+        return deepcopy((self._admission, self._timeline, self._engine, self._blend, self._free))
 
     def restore(self, snapshot: Snapshot) -> None:
         """Become what the snapshot was taken of."""
-        self._timeline, self._engine, self._blend, self._free = deepcopy(snapshot)
+        self._admission, self._timeline, self._engine, self._blend, self._free = deepcopy(snapshot)
 
 
-def _refusal(measurement: Measurement) -> Outcome | None:
-    """Return why a measurement cannot be used, whatever the state is."""
-    if measurement.t_ns > measurement.t_recv_ns + _FASTEST_CLOCK_NS:
-        return Outcome.REJECTED_GATE
-    match measurement:
-        case ImuSample():
-            if not all(map(isfinite, (*measurement.gyro_rad_s, *measurement.accel_m_s2))):
-                return Outcome.REJECTED_NOT_FINITE
-            if hypot(*measurement.gyro_rad_s) > 50.0 or hypot(*measurement.accel_m_s2) > 400.0:
-                return Outcome.REJECTED_GATE
-        case GpsFix():
-            if not measurement.valid:
-                return Outcome.REJECTED_WEAK
-            numbers = (measurement.lat_deg, measurement.lon_deg, measurement.h_ellipsoid_m)
-            if not all(map(isfinite, numbers)) or abs(measurement.lat_deg) > 90.0:
-                return Outcome.REJECTED_NOT_FINITE
-        case GpsVelocity():
-            if not all(map(isfinite, measurement.v_enu_m_s)):
-                return Outcome.REJECTED_NOT_FINITE
-            if hypot(*measurement.v_enu_m_s) > FASTEST_M_S:
-                return Outcome.REJECTED_GATE
-        case MagSample():
-            if not all(map(isfinite, measurement.field_body_t)):
-                return Outcome.REJECTED_NOT_FINITE
-        case CompassHeading():
-            if not isfinite(measurement.yaw_rad):
-                return Outcome.REJECTED_NOT_FINITE
-        case Sighting():
-            if not all(map(isfinite, (*measurement.point_site_m, *measurement.ray_cam, measurement.sigma_rad))):
-                return Outcome.REJECTED_NOT_FINITE
-            if measurement.sigma_rad <= 0.0 or abs(hypot(*measurement.ray_cam) - 1.0) > 1e-3:
-                return Outcome.REJECTED_GATE
-        case Standpoint():
-            if not all(map(isfinite, (*measurement.p_site_m, measurement.sigma_m))):
-                return Outcome.REJECTED_NOT_FINITE
-            if measurement.sigma_m <= 0.0:
-                return Outcome.REJECTED_GATE
-    return None
+def _is_finite(nav: Navigation) -> bool:
+    return isfinite(sum(nav.p_m) + sum(nav.v_m_s) + sum(nav.wxyz_site_body))
