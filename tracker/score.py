@@ -112,14 +112,11 @@ def truth_figures(estimate: Track, truth: Track, known: Known) -> Figures | None
     if not known.position or len(estimate.t_ns) == 0:
         return None
     error = estimate.p_m - truth.p_m
-    turn = products(estimate.wxyz, truth.wxyz * np.array([1.0, -1.0, -1.0, -1.0]))
-    turn *= np.where(turn[:, :1] < 0.0, -1.0, 1.0)
-    heading = 2.0 * np.arctan2(turn[:, 3], turn[:, 0])
-    tilt = 2.0 * np.arccos(np.clip(np.hypot(turn[:, 0], turn[:, 3]), 0.0, 1.0))
+    turn = turns(estimate.wxyz, truth.wxyz)
+    heading, tilt = heading_rad(turn), tilt_rad(turn)
     full = 2.0 * np.arccos(np.clip(turn[:, 0], 0.0, 1.0))
     has_all = known.height and known.tilt and known.heading
     attitude = known.tilt and known.heading
-    segments = _segments(estimate.t_ns)
     return {
         "ate_rmse_m": ate_rmse_m(error),
         "ate_debiased_rmse_m": ate_rmse_m(error - error.mean(axis=0)),
@@ -128,12 +125,28 @@ def truth_figures(estimate: Track, truth: Track, known: Known) -> Figures | None
         "heading_rmse_deg": float(np.degrees(_rms(heading))) if known.heading else None,
         "tilt_rmse_deg": float(np.degrees(_rms(tilt))) if known.tilt else None,
         "orientation_rmse_deg": float(np.degrees(_rms(full))) if attitude else None,
-        "jitter_rms_m": _jitter(error if known.height else error[:, :2], segments),
-        "jitter_rms_deg": _degrees(_jitter(2.0 * turn[:, 1:], segments)) if attitude else None,
+        "jitter_rms_m": _jitter(estimate.t_ns, error if known.height else error[:, :2]),
+        "jitter_rms_deg": _degrees(_jitter(estimate.t_ns, 2.0 * turn[:, 1:])) if attitude else None,
         "nees_per_dim": _nees(error[:, :2], estimate.cov[:, :2, :2]),
         "nees_heading": _nees(heading[:, None], estimate.cov[:, 5:6, 5:6]) if known.heading else None,
         "registration_px": registration_px(estimate, truth) if has_all else None,
     }
+
+
+def turns(wxyz: Vector, wxyz_true: Vector) -> Vector:
+    """Return the (n, 4) rotations in site that take true attitudes to others, the shorter way round."""
+    turn = products(wxyz, wxyz_true * np.array([1.0, -1.0, -1.0, -1.0]))
+    return np.asarray(turn * np.where(turn[:, :1] < 0.0, -1.0, 1.0))
+
+
+def heading_rad(turn: Vector) -> Vector:
+    """Return the part about the vertical, (n,), of (n, 4) rotations."""
+    return np.asarray(2.0 * np.arctan2(turn[:, 3], turn[:, 0]))
+
+
+def tilt_rad(turn: Vector) -> Vector:
+    """Return how far the vertical leans, (n,), in (n, 4) rotations."""
+    return np.asarray(2.0 * np.arccos(np.clip(np.hypot(turn[:, 0], turn[:, 3]), 0.0, 1.0)))
 
 
 def ate_rmse_m(error_m: Vector) -> float:
@@ -188,18 +201,23 @@ def _segments(t_ns: NDArray[np.int64]) -> list[slice]:
     return [slice(a, b) for a, b in itertools.pairwise(edges) if b - a >= least]
 
 
-def _jitter(error: Vector, segments: list[slice]) -> float | None:
-    """Return the RMS length of the part of an error, (n, d), above 1 Hz."""
-    squares, count = 0.0, 0
-    for segment in segments:
+def fast_part(t_ns: NDArray[np.int64], error: Vector) -> tuple[Vector, NDArray[np.bool_]]:
+    """Return the part of an error, (n, d), above 1 Hz, and where it can be told, (n,): in stretches without gaps."""
+    fast, told = np.zeros_like(error), np.zeros(len(error), bool)
+    for segment in _segments(t_ns):
         part = error[segment]
         ramp = np.linspace(0.0, 1.0, len(part))[:, None]
         part = part - (part[0] + ramp * (part[-1] - part[0]))  # a step between the ends would ring at every frequency
         spectrum = np.fft.rfft(part, axis=0)
         spectrum[np.fft.rfftfreq(len(part), 1.0 / RATE_HZ) < JITTER_HZ] = 0.0
-        squares += float(np.sum(np.square(np.fft.irfft(spectrum, len(part), axis=0))))
-        count += len(part)
-    return float(np.sqrt(squares / count)) if count else None
+        fast[segment], told[segment] = np.fft.irfft(spectrum, len(part), axis=0), True
+    return fast, told
+
+
+def _jitter(t_ns: NDArray[np.int64], error: Vector) -> float | None:
+    """Return the RMS length of the part of an error, (n, d), above 1 Hz."""
+    fast, told = fast_part(t_ns, error)
+    return float(np.sqrt(np.sum(np.square(fast)) / np.sum(told))) if np.any(told) else None
 
 
 def products(a: Vector, b: Vector) -> Vector:

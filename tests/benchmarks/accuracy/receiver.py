@@ -1,0 +1,72 @@
+"""A GPS receiver whose error has two time scales, and which now and then is badly wrong about its speed."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from tests.benchmarks.accuracy.visitor import Visitor
+from tracker.geodesy import SiteFrame
+from tracker.measurements import GpsFix, GpsVelocity, Matrix
+
+#: Correlation time and size of each part of the error, each horizontal axis.
+SLOW_S, SLOW_M = (20.0, 400.0), (0.8, 1.6)
+WHITE_M = 0.3
+UP = 1.8
+"""How much larger it is upwards."""
+VELOCITY_M_S, VELOCITY_UP_M_S = 0.09, 0.15
+SPIKE_SHARE, SPIKE_M_S = 0.02, 0.5
+LATE_S = (0.15, 0.35)
+RATE_HZ = 1.0
+STREAM = 33
+AXES = np.array([1.0, 1.0, UP])
+
+
+def claimed_m() -> Matrix:
+    """Return the error's true standard deviation, (3,)."""
+    return np.asarray(np.sqrt(sum(size**2 for size in SLOW_M) + WHITE_M**2) * AXES)
+
+
+def position_error_m(rng: np.random.Generator, count: int) -> Matrix:
+    """Return the error of `count` fixes, (n, 3), from its steady state on."""
+    error = rng.normal(0.0, WHITE_M, (count, 3))
+    for time_s, size_m in zip(SLOW_S, SLOW_M, strict=True):
+        keep = np.exp(-1.0 / (RATE_HZ * time_s))
+        part = rng.normal(0.0, size_m, 3)
+        for row in error:
+            row += part
+            part = keep * part + np.sqrt(1.0 - keep**2) * rng.normal(0.0, size_m, 3)
+    return np.asarray(error * AXES)
+
+
+def velocity_error_m_s(rng: np.random.Generator, count: int) -> Matrix:
+    """Return the error of `count` velocities, (n, 3)."""
+    error = rng.normal(0.0, 1.0, (count, 3)) * [VELOCITY_M_S, VELOCITY_M_S, VELOCITY_UP_M_S]
+    spikes = rng.random(count) < SPIKE_SHARE
+    direction = rng.normal(0.0, 1.0, (count, 3))
+    direction *= SPIKE_M_S / np.linalg.norm(direction, axis=1, keepdims=True)
+    return np.asarray(error + spikes[:, None] * direction)
+
+
+def receive(walk: Visitor, understates: float, silent_s: tuple[float, float] | None) -> Iterator[GpsFix | GpsVelocity]:
+    """Yield fixes and velocities of the antenna.
+
+    Args:
+        walk: The truth.
+        understates: By how much the claimed sigma is too small.
+        silent_s: From when to when, in seconds of the walk, nothing is received.
+    """
+    rng = np.random.default_rng([walk.settings.seed, STREAM])
+    stamps, site = walk.stamps(RATE_HZ), SiteFrame(walk.settings.origin)
+    motion, lever_m = walk.at(stamps), walk.rig.T_body_gps[:3, 3]
+    p = motion.p_m + motion.R_site_body @ lever_m + position_error_m(rng, len(stamps))
+    swing = np.einsum("nij,nj->ni", motion.R_site_body, np.cross(motion.omega_body_rad_s, lever_m))
+    v = motion.v_m_s + swing + velocity_error_m_s(rng, len(stamps))
+    late_ns = (rng.uniform(*LATE_S, len(stamps)) * 1e9).astype(np.int64)
+    cov = tuple(np.diag((claimed_m() / understates) ** 2).ravel().tolist())
+    for number, t in enumerate(stamps.tolist()):
+        if silent_s is not None and silent_s[0] <= number / RATE_HZ < silent_s[1]:
+            continue
+        (x, y, z), (vx, vy, vz) = p[number].tolist(), v[number].tolist()
+        arrived = t + int(late_ns[number])
+        yield GpsFix(t, arrived, *site.geodetic_from_site((x, y, z)), cov)
+        yield GpsVelocity(t, arrived, (vx, vy, vz))

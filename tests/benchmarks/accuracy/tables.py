@@ -1,0 +1,80 @@
+"""The study on a terminal: what is asked and what was measured, and the medians of every entrant."""
+
+from collections.abc import Sequence
+
+from rich.console import Console
+from rich.table import Table
+
+from tracker.score import Figures
+
+#: Heading, figure, factor and format of each column of the medians.
+COLUMNS = (
+    ("ATE m", "ate_m", 1.0, "{:.2f}"),
+    ("/raw", "ate_ratio", 1.0, "{:.2f}"),
+    ("/batch", "batch_ratio", 1.0, "{:.2f}"),
+    ("de-b. m", "debiased_m", 1.0, "{:.2f}"),
+    ("90 s m", "debiased_90s_m", 1.0, "{:.2f}"),
+    ("height m", "height_m", 1.0, "{:.2f}"),
+    ("head. °", "heading_deg", 1.0, "{:.2f}"),
+    ("walked °", "heading_walked_deg", 1.0, "{:.2f}"),
+    ("20 m °", "heading_20m_deg", 1.0, "{:.2f}"),
+    ("tilt °", "tilt_deg", 1.0, "{:.2f}"),
+    ("walk mm", "jitter_walking_m", 1e3, "{:.1f}"),
+    ("stand mm", "jitter_standing_m", 1e3, "{:.1f}"),
+    ("NEES p", "nees_position", 1.0, "{:.2f}"),
+    ("NEES h", "nees_heading", 1.0, "{:.2f}"),
+)
+#: What a scenario is about: shown as "special".
+SPECIAL = {
+    "outage": ("outage_end_m", "outage_added_m"),
+    "disturbance": ("excursion_deg",),
+    "three-taps": ("told_m", "told_heading_deg", "told_px"),
+    "stand-here": ("told_m", "told_heading_deg", "told_px"),
+    "plain": ("prediction_deg", "prediction_added_deg", "cpu_us"),
+}
+
+
+def print_study(summary: Figures, console: Console) -> None:
+    """Print both tables."""
+    console.print(medians_table(summary["medians"]))
+    console.print(goals_table(summary["goals"]))
+    if summary["batch_is_a_ceiling"] is False:
+        console.print("The batch does not beat every online estimator: the ratio to it is void.", style="yellow")
+
+
+def goals_table(goals: Sequence[Figures]) -> Table:
+    """Return the table of what is asked."""
+    table = Table("figure", "scenario", "estimator", "measured", "95 %", "worst", "at least", "aim", "met")
+    for row in goals:
+        table.add_row(
+            row["goal"],
+            row["scenario"],
+            row["estimator"].removesuffix("/precise"),
+            f"{row['value']:.3g} {row['unit']}",
+            _span(row["interval"]),
+            f"{row['worst']:.3g}",
+            _span(row["at_least"]),
+            _span(row["aim"]),
+            {"aim": "[green]aim[/]", "at least": "at least", "no": "[red]no[/]"}[row["met"]],
+        )
+    return table
+
+
+def medians_table(medians: Sequence[Figures]) -> Table:
+    """Return the table of medians over seeds."""
+    table = Table("scenario", "estimator", *(column[0] for column in COLUMNS), "special")
+    for row in medians:
+        cells = [_cell(row.get(name), scale, form) for _, name, scale, form in COLUMNS]
+        special = " ".join(_cell(row.get(name), 1.0, "{:.2f}") for name in SPECIAL.get(row["scenario"], ()))
+        table.add_row(row["scenario"], row["estimator"], *cells, special)
+    return table
+
+
+def _cell(value: float | None, scale: float, form: str) -> str:
+    return "-" if value is None else form.format(value * scale)
+
+
+def _span(value: float | Sequence[float] | None) -> str:
+    if value is None:
+        return "-"
+    return f"{value:g}" if isinstance(value, float | int) else " to ".join(f"{one:.3g}" for one in value)
