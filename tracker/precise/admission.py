@@ -5,7 +5,7 @@ from typing import TypeAlias
 
 from tracker.fixes import BELIEVED, FASTEST_M_S, ORDINARY_M
 from tracker.geodesy import SiteFrame
-from tracker.measurements import GpsFix, ImuSample, Measurement, Vector3
+from tracker.measurements import GpsFix, ImuSample, Measurement, Standpoint, Vector3
 
 #: Inertial samples further apart than this do not belong to one motion.
 LEAP_NS = 1_000_000_000
@@ -13,6 +13,8 @@ LEAP_NS = 1_000_000_000
 _LEAPT = 10
 #: What is stamped this far ahead of the newest inertial sample would wait for a time that may not come.
 _AHEAD_NS = 2_000_000_000
+#: Who says that they stand further than this from where the receiver has them is mistaken.
+_ASTRAY_M = 1_000.0
 
 _Place: TypeAlias = tuple[int, Vector3]
 
@@ -32,7 +34,12 @@ class Admission:
             return self._refuses_imu(measurement.t_ns, newest_ns)
         if measurement.t_ns > newest_ns + _AHEAD_NS:
             return True
-        return isinstance(measurement, GpsFix) and self._refuses_fix(measurement)
+        match measurement:
+            case GpsFix():
+                return self._refuses_fix(measurement)
+            case Standpoint():
+                return self._fix is not None and _distance_m(self._fix[1], measurement.p_site_m) > _ASTRAY_M
+        return False
 
     def _refuses_imu(self, t_ns: int, newest_ns: int) -> bool:
         leaps = self._leaps
@@ -64,5 +71,8 @@ class Admission:
 
 
 def _is_walkable(one: _Place, other: _Place) -> bool:
-    distance_m = hypot(*(b - a for a, b in zip(one[1], other[1], strict=True)))
-    return distance_m <= ORDINARY_M + FASTEST_M_S * abs(other[0] - one[0]) * 1e-9
+    return _distance_m(one[1], other[1]) <= ORDINARY_M + FASTEST_M_S * abs(other[0] - one[0]) * 1e-9
+
+
+def _distance_m(a: Vector3, b: Vector3) -> float:
+    return hypot(*(y - x for x, y in zip(a, b, strict=True)))

@@ -1,11 +1,12 @@
 """`precise`: measurements in, poses out. What a sensor says is applied when it was measured, however late it came."""
 
 from copy import deepcopy
-from math import isfinite
+from math import hypot, isfinite
 
 import numpy as np
 
 from tracker.estimator import Innovation, Origin, Pose, Snapshot
+from tracker.fixes import FASTEST_M_S
 from tracker.geodesy import SiteFrame, gravity_m_s2
 from tracker.measurements import (
     CompassHeading,
@@ -117,8 +118,8 @@ class PreciseEstimator:
                 last_ns = measurement.t_ns
             if measurement.t_ns == last_ns and self._engine.hypotheses is not None:
                 self._free.learn(last_ns, self._engine.best.biases)
-        if last_ns is not None and self._engine.hypotheses is not None and not _is_finite(self._engine.best.nav):
-            self._begin()
+        if last_ns is not None and self._engine.hypotheses is not None and not _is_walk(self._engine.best.nav):
+            self._begin()  # lost: better to have no pose than that one
 
     def _take(self, measurement: Timed, following: ImuSample | None) -> None:
         """Let the engine take a measurement; where that corrects it, what is shown goes on from where it was."""
@@ -184,3 +185,7 @@ class PreciseEstimator:
 
 def _is_finite(nav: Navigation) -> bool:
     return isfinite(sum(nav.p_m) + sum(nav.v_m_s) + sum(nav.wxyz_site_body))
+
+
+def _is_walk(nav: Navigation) -> bool:
+    return _is_finite(nav) and hypot(*nav.v_m_s) <= FASTEST_M_S

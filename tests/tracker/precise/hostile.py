@@ -53,6 +53,24 @@ def refused(t_ns: int) -> list[Case]:
     ]
 
 
+def out_of_place(last: Measurement) -> list[Case]:
+    """Return what is to be refused because of what came before, `last` the last of it: repeated, out of time, out of reach."""
+    t_ns, stale = last.t_recv_ns, Outcome.REJECTED_STALE
+    good, old = sane(t_ns), sane(-(10**30))
+    fix = good["fix"]
+    assert isinstance(fix, GpsFix)
+    return [
+        (last, stale),
+        *((one, stale) for one in old.values()),
+        (ImuSample(t_ns + 3600 * S, t_ns + 3600 * S, ZERO, ZERO), GATE),
+        (GpsVelocity(10**30, 10**30, ZERO), GATE),
+        (replace(fix, lat_deg=fix.lat_deg + 0.05), GATE),
+        (replace(fix, lat_deg=-fix.lat_deg, t_ns=t_ns + 1), GATE),
+        (replace(fix, lat_deg=0.0, lon_deg=0.0, t_ns=t_ns + 2), GATE),
+        (Standpoint(t_ns, t_ns, (1e5, 0.0, 0.0), 0.1), GATE),
+    ]
+
+
 def _of_inertial(imu: ImuSample) -> list[Case]:
     return [
         (replace(imu, gyro_rad_s=(nan, 0.0, 0.0)), NOT_FINITE),

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from tracker.geodesy import SiteFrame
-from tracker.measurements import GpsFix, GpsVelocity, ImuSample
+from tracker.measurements import GpsFix, GpsVelocity, ImuSample, Standpoint
 from tracker.precise.admission import Admission
 from tracker.simulate import AGORA_ORIGIN
 
@@ -65,3 +65,11 @@ def test_what_is_stamped_far_ahead_of_the_inertial_sensor_is_left_out() -> None:
     admission = Admission(SITE)
     assert not admission.refuses(GpsVelocity(2 * S, 2 * S, ZERO), S)
     assert admission.refuses(GpsVelocity(4 * S, 4 * S, ZERO), S)
+
+
+def test_nobody_stands_a_kilometre_from_where_the_receiver_has_them() -> None:
+    admission, near, far = Admission(SITE), (900.0, 0.0, 0.0), (1100.0, 0.0, 0.0)
+    assert not admission.refuses(Standpoint(0, 0, far, 1.0), 0), "nothing is known yet"
+    _let_in(admission, [_fix(0, 0.0)])
+    assert not admission.refuses(Standpoint(S, S, near, 1.0), S)
+    assert admission.refuses(Standpoint(S, S, far, 1.0), S)
