@@ -46,10 +46,10 @@ NO_INDEX = the package index gave no answer, or no: check the network and the se
 NO_REGISTRY = the web packages were not installed: check the network and the settings of npm (registry, proxy, certificate).
 CHECKING = checking format, lint and types
 
-.PHONY: help setup demo build test check bench paper gallery lock clean FORCE
+.PHONY: help setup demo build test check bench bench-accuracy paper gallery lock clean FORCE
 
 help: ## list the commands
-	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 13
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 21
 
 demo: setup ## play the recorded walk as AR in a browser; ARGS="--no-browser --port 0" goes to agora demo
 	@exec $(BIN)/agora demo $(ARGS)
@@ -76,6 +76,9 @@ check: $(BIN)/.dev web/node_modules/.package-lock.json ## format, lint and types
 bench: setup $(BIN)/.dev ## measure speed beside the peers; writes build/bench.json
 	@mkdir -p build
 	@$(BIN)/python tests/benchmarks/run.py $(ARGS)
+
+bench-accuracy: setup $(BIN)/.dev ## measure accuracy over seeds, on logs and beside rivals; ARGS="--only study --seeds 101-104" for a part
+	@$(BIN)/python -m tests.benchmarks.accuracy $(ARGS)
 
 paper: setup $(BIN)/.dev ## measure all of the paper and write docs/paper.md anew; ARGS="--only document" for the writing alone
 	@$(BIN)/python -m server.paper $(ARGS)
