@@ -12,13 +12,14 @@ from tracker.estimators import ESTIMATORS
 from tracker.evaluate import Run, figures, log_origin, run
 from tracker.log import Log
 from tracker.log_writer import LogWriter
-from tracker.measurements import Frame, GpsFix, MagSample, Measurement, TruePose
+from tracker.measurements import Frame, GpsFix, GpsVelocity, ImuSample, MagSample, Measurement, TruePose
 from tracker.pictures import ArrayPicture
 from tracker.simulate import AGORA_ORIGIN, START_NS, Walk, WalkSettings, default_rig, simulate
 
 RIG = default_rig()
 SECONDS = 32.0
 CAMERA = "camera-gps-imu/famm"
+PRECISE = ("gps-imu/precise", "camera-gps-imu/precise")
 
 Write = Callable[[str, Iterable[Measurement]], Log]
 
@@ -57,7 +58,10 @@ def whole(write: Write, measurements: list[Measurement]) -> Log:
 
 
 def _rows(result: Run) -> list[tuple[object, ...]]:
-    return [(p.t_ns, p.p_site_m, p.wxyz_site_body, p.v_site_m_s, p.motion_model) for p in result.poses]
+    return [
+        (p.t_ns, p.p_site_m, p.wxyz_site_body, p.v_site_m_s, p.cov.tobytes(), p.motion_model, p.heading_known)
+        for p in result.poses
+    ]
 
 
 @pytest.mark.parametrize("name", ESTIMATORS)
@@ -94,7 +98,7 @@ def test_every_figure_is_there(whole: Log, name: str) -> None:
     assert counts["skipped"] == {}
 
 
-@pytest.mark.parametrize("name", ["gps-imu/cmm", CAMERA])
+@pytest.mark.parametrize("name", ["gps-imu/cmm", CAMERA, *PRECISE])
 def test_ground_truth_teaches_nothing(whole: Log, write: Write, measurements: list[Measurement], name: str) -> None:
     """Stripped of it, a log gives bit-identical poses. Its origin is part of the question, so that it is given back."""
     stripped = write("stripped", (m for m in measurements if not isinstance(m, TruePose)))
@@ -133,9 +137,10 @@ def test_truth_without_attitude_or_height_leaves_gaps(write: Write, measurements
     }  # fmt: skip
 
 
-def test_poses_are_causal_and_regular(whole: Log) -> None:
+@pytest.mark.parametrize("name", ["gps-imu/famm", *PRECISE])
+def test_poses_are_causal_and_regular(whole: Log, name: str) -> None:
     """Fifty a second; what arrives after t changes no pose up to t."""
-    result = run(whole, "gps-imu/famm")
+    result = run(whole, name)
     t = np.array([pose.t_ns for pose in result.poses])
     assert (np.diff(t) == 20_000_000).all()
 
@@ -148,9 +153,18 @@ def test_poses_are_causal_and_regular(whole: Log) -> None:
         def messages(self, **options: Any) -> Iterable[Measurement]:
             return (m for m in whole.messages(**options) if m.t_recv_ns < START_NS + 20_000_000_000)
 
-    half = run(Cut(), "gps-imu/famm")  # type: ignore[arg-type]
+    half = run(Cut(), name)  # type: ignore[arg-type]
     assert _rows(half) == _rows(result)[: len(half.poses)]
     assert len(half.poses) > 900
+
+
+def test_without_a_receiver_precise_is_an_attitude_filter(write: Write, measurements: list[Measurement]) -> None:
+    """Tilt and jitter are scored; of its place it says that it may be anywhere."""
+    log = write("indoors", (m for m in measurements if not isinstance(m, GpsFix | GpsVelocity | Frame)))
+    result = run(log, PRECISE[0])
+    found = figures(result)["truth"]
+    assert found["tilt_rmse_deg"] < 1.0
+    assert min(pose.cov[0, 0] for pose in result.poses) > 1e5
 
 
 def test_what_is_missing_is_said(write: Write, measurements: list[Measurement]) -> None:
@@ -160,6 +174,10 @@ def test_what_is_missing_is_said(write: Write, measurements: list[Measurement]) 
         run(log, CAMERA)
     with pytest.raises(UnknownEstimator, match="kalman"):
         run(log, "kalman")
+    blind = write("blind", (m for m in measurements if not isinstance(m, ImuSample)))
+    for name in PRECISE:
+        with pytest.raises(MissingSensor, match=rf"blind cannot run {name}: it has no IMU\."):
+            run(blind, name)
     done: list[float] = []
     run(log, "gps-imu/cmm", progress=done.append)
     assert done == sorted(done)
