@@ -75,7 +75,7 @@ check: $(BIN)/.dev web/node_modules/.package-lock.json ## format, lint and types
 
 bench: setup $(BIN)/.dev ## measure speed beside the peers; writes build/bench.json
 	@mkdir -p build
-	@$(BIN)/python tests/benchmarks/run.py $(ARGS)
+	@$(BIN)/python -m tests.benchmarks.run $(ARGS)
 
 bench-accuracy: setup $(BIN)/.dev ## measure accuracy over seeds, on logs and beside rivals; ARGS="--only study --seeds 101-104" for a part
 	@$(BIN)/python -m tests.benchmarks.accuracy $(ARGS)

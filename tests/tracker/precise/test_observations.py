@@ -1,5 +1,6 @@
 """Every Jacobian of a measurement against differences, at states and measurements drawn by chance."""
 
+import inspect
 from collections.abc import Callable
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.random import Generator
 from tracker.geometry import matrix_from_wxyz, normalise
 from tracker.measurements import Matrix, Vector3, Wxyz
 from tracker.precise import observations
-from tracker.precise.error_model import start_covariance
+from tracker.precise.error_model import THETA, start_covariance
 from tracker.precise.error_state import ErrorState, Observation
 from tracker.precise.navigation import Biases, Navigation
 from tracker.precise.settings import PreciseSettings
@@ -90,27 +91,56 @@ def _direction(rng: Generator, state: ErrorState) -> Sensor:
 
 
 SENSORS: dict[str, Callable[[Generator, ErrorState], Sensor]] = {
-    "fix": lambda rng, _: lambda s: observations.gps_position(s, (1.0, 2.0, 3.0), (2.0, 2.0, 4.0), LEVER),
-    "velocity": lambda rng, _: lambda s: observations.gps_velocity(s, (1.0, 2.0, 3.0), (0.1, 0.2, 0.3), LEVER),
-    "standing": lambda rng, _: lambda s: observations.velocity(s, (0.0, 0.0, 0.0)),
-    "still": lambda rng, _: lambda s: observations.turn_rate(s, (0.01, 0.02, 0.03)),
+    "gps_position": lambda rng, _: lambda s: observations.gps_position(s, (1.0, 2.0, 3.0), (2.0, 2.0, 4.0), LEVER),
+    "gps_velocity": lambda rng, _: lambda s: observations.gps_velocity(s, (1.0, 2.0, 3.0), (0.1, 0.2, 0.3), LEVER),
+    "velocity": lambda rng, _: lambda s: observations.velocity(s, (0.0, 0.0, 0.0)),
+    "turn_rate": lambda rng, _: lambda s: observations.turn_rate(s, (0.01, 0.02, 0.03)),
     "height": lambda rng, _: lambda s: observations.height(s, 1.6),
-    "place": lambda rng, _: lambda s: observations.position(s, (1.0, 2.0, 3.0)),
-    "magnetometer": _magnetometer,
-    "landmark": _landmark,
-    "rotation": _rotation,
-    "direction": _direction,
+    "position": lambda rng, _: lambda s: observations.position(s, (1.0, 2.0, 3.0)),
+    "magnetic_yaw": _magnetometer,
+    "bearing": _landmark,
+    "rotation_to_clone": _rotation,
+    "direction_from_clone": _direction,
 }
 
 
-@pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize("name", SENSORS)
-def test_jacobians(name: str, seed: int) -> None:
-    rng = np.random.default_rng([seed, len(name)])
-    state = _state(rng)
-    sensor = SENSORS[name](rng, state)
+def _dense(state: ErrorState, sensor: Sensor) -> Matrix:
     residual, blocks = _seen(sensor, state)
     H = np.zeros((len(residual), len(state.covariance)))
     for columns, block in blocks:
         H[:, columns] += block
-    assert pytest.approx(_numeric(state, sensor), abs=1e-7) == H
+    return H
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("name", SENSORS)
+def test_jacobians(name: str, seed: int) -> None:
+    """Where what is seen is what the state foresees, so far as that matters."""
+    rng = np.random.default_rng([seed, len(name)])
+    state = _state(rng)
+    sensor = SENSORS[name](rng, state)
+    assert _dense(state, sensor) == pytest.approx(_numeric(state, sensor), abs=1e-7)
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("name", ["bearing", "rotation_to_clone", "direction_from_clone", "magnetic_yaw"])
+def test_jacobians_hold_near_by(name: str, seed: int) -> None:
+    """A state that is off by two degrees: the derivative of a direction changes by as much, and no more."""
+    rng = np.random.default_rng([seed, len(name)])
+    state = _state(rng)
+    sensor = SENSORS[name](rng, state)
+    error = np.zeros(len(state.covariance))
+    error[THETA] = 0.02 * rng.normal(size=3)
+    state.move(error)
+    H = _dense(state, sensor)
+    assert _dense(state, sensor) == pytest.approx(_numeric(state, sensor), abs=0.1 * np.abs(H).max())
+
+
+def test_no_observation_is_left_out() -> None:
+    functions = inspect.getmembers(observations, inspect.isfunction)
+    own = {
+        name
+        for name, f in functions
+        if f.__module__ == observations.__name__ and "state" in inspect.signature(f).parameters
+    }
+    assert own == set(SENSORS)
