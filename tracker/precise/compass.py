@@ -28,6 +28,7 @@ class Compass:
         x, y, z = rotate(wxyz_site_body, sample.field_body_t)
         flat = hypot(x, y)
         if flat == 0.0:
+            self.is_trusted = False  # straight up or down, it points nowhere
             return
         strength, dip = hypot(flat, z), atan2(-z, flat)
         earth = self._earth
