@@ -4,8 +4,10 @@ The recordings' axes are nominal: how a phone's camera stands to its gyroscope, 
 rest) and how late its stamps are were never measured. `fit` finds these seven numbers, one set for every recording of a phone.
 """
 
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 
 import cv2
 import numpy as np
@@ -127,19 +129,34 @@ def agreement(recording: Turns, mounting: Mounting) -> Figures:
     }
 
 
-def closing_deg(log: Log, estimator: str) -> float:
+def closing_deg(log: Log, estimator: str, wait_s: float = 0.0) -> float:
     """Return by how much a full turn does not close: an estimator's poses against what its first and last picture show.
 
     The pictures look at one scene from one place, so that features matched between them tell the rotation that is left.
+
+    Args:
+        log: The turn.
+        estimator: By name.
+        wait_s: How long after its picture each pose is asked for: one that begins late still tells of the first picture.
     """
-    pipeline, seen = make_pipeline(estimator, log, log_origin(log)), []
+    pipeline, waiting = make_pipeline(estimator, log, log_origin(log)), deque[Frame]()
+    seen: list[tuple[Frame, Matrix]] = []
+
+    def ask(until_ns: float) -> None:
+        while waiting and waiting[0].t_ns <= until_ns - wait_s * 1e9:
+            frame = waiting.popleft()
+            pose = pipeline.predict(frame.t_ns)
+            if pose is not None:
+                seen.append((frame, matrix_from_wxyz(pose.wxyz_site_body) @ log.rig.T_body_cam[:3, :3]))
+
     for measurement in log.messages(truth=False):
         pipeline.step(measurement)
         if isinstance(measurement, Frame):
-            pose = pipeline.predict(measurement.t_ns)
-            if pose is not None:
-                seen.append((measurement, matrix_from_wxyz(pose.wxyz_site_body) @ log.rig.T_body_cam[:3, :3]))
-    (first, R_site_first), (last, R_site_last) = seen[FIRST_PICTURE], seen[-1]
+            waiting.append(measurement)
+        ask(measurement.t_recv_ns)
+    ask(inf)
+    first, R_site_first = next(one for one in seen if one[0].frame_id >= FIRST_PICTURE)
+    last, R_site_last = seen[-1]
     return _off_deg(_camera(log), first, last, R_site_first.T @ R_site_last)
 
 

@@ -10,11 +10,12 @@ from rich.console import Console
 
 from server.settings import choose
 from tests.benchmarks.accuracy import site
+from tests.benchmarks.accuracy.logs import DATA, logs
 from tests.benchmarks.accuracy.scenarios import SCENARIOS
 from tests.benchmarks.accuracy.study import FOLDER, SEEDS, study
-from tests.benchmarks.accuracy.tables import print_study
+from tests.benchmarks.accuracy.tables import print_logs, print_study
 
-STEPS = ("study",)
+STEPS = ("study", "logs")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -22,16 +23,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
     asked = _parser().parse_args(arguments)
     cv2.setNumThreads(1)
     console = Console(width=None if Console().is_terminal else 220)
+    settings = choose(asked.set) if asked.set else None
     try:
-        found = study(
-            asked.out / "study.json",
-            asked.seeds,
-            asked.jobs,
-            scenarios=asked.scenarios,
-            wanted=asked.estimators,
-            settings=choose(asked.set) if asked.set else None,
-        )
-        print_study(found["summary"], console)
+        if asked.only in (None, "study"):
+            chosen = {"scenarios": asked.scenarios, "wanted": asked.estimators, "settings": settings}
+            print_study(study(asked.out / "study.json", asked.seeds, asked.jobs, **chosen)["summary"], console)
+        if asked.only in (None, "logs"):
+            found = logs(asked.out / "logs.json", asked.logs, asked.jobs, wanted=asked.estimators, settings=settings)
+            print_logs(found, console)
     finally:
         site.close()
 
@@ -50,6 +49,7 @@ def _parser() -> argparse.ArgumentParser:
         metavar="NAME,...",
         help="by name or a part: precise, paper, gtsam",
     )
+    parser.add_argument("--logs", type=Path, default=DATA, metavar="FOLDER", help="recorded walks; ../shared/data")
     parser.add_argument("--set", action="append", metavar="KEY=VALUE", help="a setting of the precise filter")
     parser.add_argument(
         "--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="processes; one for each core"

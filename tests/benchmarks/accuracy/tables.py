@@ -24,6 +24,7 @@ COLUMNS = (
     ("NEES p", "nees_position", 1.0, "{:.2f}"),
     ("NEES h", "nees_heading", 1.0, "{:.2f}"),
 )
+MET = {"aim": "[green]aim[/]", "at least": "at least", "no": "[red]no[/]"}
 #: What a scenario is about: shown as "special".
 SPECIAL = {
     "outage": ("outage_end_m", "outage_added_m"),
@@ -42,6 +43,41 @@ def print_study(summary: Figures, console: Console) -> None:
         console.print("The batch does not beat every online estimator: the ratio to it is void.", style="yellow")
 
 
+#: The same for the logs.
+LOG_COLUMNS = (
+    ("raw m", "raw_m", 1.0, "{:.2f}"),
+    ("ATE m", "ate_m", 1.0, "{:.2f}"),
+    ("raw de-b. m", "raw_debiased_m", 1.0, "{:.2f}"),
+    ("de-b. m", "debiased_m", 1.0, "{:.2f}"),
+    ("furthest m", "furthest_m", 1.0, "{:.1f}"),
+    ("height m", "height_m", 1.0, "{:.2f}"),
+    ("head. °", "heading_deg", 1.0, "{:.2f}"),
+    ("tilt °", "tilt_deg", 1.0, "{:.2f}"),
+    ("jitter mm", "jitter_m", 1e3, "{:.1f}"),
+    ("NEES p", "nees_position", 1.0, "{:.2f}"),
+    ("NEES h", "nees_heading", 1.0, "{:.2f}"),
+    ("closing °", "closing_deg", 1.0, "{:.2f}"),
+    ("begins s", "first_pose_s", 1.0, "{:.1f}"),
+)
+
+
+def print_logs(found: Figures, console: Console) -> None:
+    """Print the rows of the logs, then what is asked."""
+    table = Table("log", "estimator", *(column[0] for column in LOG_COLUMNS))
+    for row in found["rows"]:
+        cells = [_cell(row.get(name), scale, form) for _, name, scale, form in LOG_COLUMNS]
+        table.add_row(row["log"], row["estimator"], *cells)
+    console.print(table)
+    goals = Table("figure", "log", "estimator", "measured", "at least", "aim", "met")
+    for row in found["summary"]["goals"]:
+        measured = f"{row['value']:.3g} {row['unit']}"
+        marks = (_span(row["at_least"]), _span(row["aim"]), MET[row["met"]])
+        goals.add_row(row["goal"], row["log"], row["estimator"].removesuffix("/precise"), measured, *marks)
+    console.print(goals)
+    for log, estimator in found["summary"]["not_played"]:
+        console.print(f"{log} did not play through with {estimator}.", style="yellow")
+
+
 def goals_table(goals: Sequence[Figures]) -> Table:
     """Return the table of what is asked."""
     table = Table("figure", "scenario", "estimator", "measured", "95 %", "worst", "at least", "aim", "met")
@@ -55,7 +91,7 @@ def goals_table(goals: Sequence[Figures]) -> Table:
             f"{row['worst']:.3g}",
             _span(row["at_least"]),
             _span(row["aim"]),
-            {"aim": "[green]aim[/]", "at least": "at least", "no": "[red]no[/]"}[row["met"]],
+            MET[row["met"]],
         )
     return table
 
