@@ -188,7 +188,10 @@ def _degrees(value_rad: float | None) -> float | None:
     return None if value_rad is None else float(np.degrees(value_rad))
 
 
-def _nees(error: Vector, cov: Vector) -> float:
+def _nees(error: Vector, cov: Vector) -> float | None:
+    """Return the NEES per dimension; None for an estimator that tells no covariance (all zero)."""
+    if not np.any(cov):
+        return None
     solved = np.linalg.solve(cov, error[:, :, None])[:, :, 0]
     return float(np.mean(np.sum(error * solved, axis=1)) / error.shape[1])
 

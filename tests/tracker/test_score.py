@@ -84,6 +84,29 @@ def test_what_truth_does_not_know_is_none_not_zero() -> None:
     assert score.truth_figures(estimate, truth, score.Known(False, True, True, True)) is None
 
 
+def test_no_covariance_is_no_consistency() -> None:
+    """One that is told for position alone judges position alone."""
+    estimate, truth = _tracks()
+    cov = np.zeros_like(estimate.cov)
+    for known, told in ((False, (None, None)), (True, (pytest.approx(0.7, abs=0.5), None))):
+        cov[:, :2, :2] = np.eye(2) if known else 0.0
+        figures = score.truth_figures(score.Track(estimate.t_ns, estimate.p_m, estimate.wxyz, cov), truth, KNOWN)
+        assert figures is not None
+        assert (figures["nees_per_dim"], figures["nees_heading"]) == told
+
+
+def test_the_fast_part_is_told_between_gaps_only() -> None:
+    """A stretch shorter than four seconds tells no 1 Hz."""
+    t_ns = np.arange(500, dtype=np.int64) * STEP_NS
+    t_ns[150:] += 1_000_000_000
+    shake = 0.01 * np.sin(2 * np.pi * 5 * t_ns * 1e-9)[:, None]
+    fast, told = score.fast_part(t_ns, shake + 3.0)
+    assert not told[:150].any()
+    assert told[150:].all()
+    assert np.all(fast[:150] == 0.0)
+    assert fast[200:450] == pytest.approx(shake[200:450], abs=1e-3)
+
+
 def test_gaps_in_truth_are_left_out() -> None:
     """Nothing is interpolated across a second without truth, nor beyond its ends."""
 
