@@ -8,7 +8,8 @@ from server.paper.digits import write_figures
 from server.paper.tasks import Task, content_key, progress_bar, run_tasks
 from tests.benchmarks.accuracy.entrants import RAW, run_unit
 from tests.benchmarks.accuracy.figures import row_of
-from tests.benchmarks.accuracy.goals import BOTH, summary
+from tests.benchmarks.accuracy.goals import BOTH, by_cell, summary
+from tests.benchmarks.accuracy.pairs import against
 from tests.benchmarks.accuracy.scenarios import SCENARIOS
 from tests.benchmarks.accuracy.site import agora
 from tests.benchmarks.accuracy.world import record
@@ -84,7 +85,7 @@ def study(
                 results = run_tasks(tasks, key=key_of(kind, settings), jobs=jobs, folder=folder, done=bar)
             rows += [row for result in results for row in result]
     rows.sort(key=lambda row: (list(SCENARIOS).index(row["scenario"]), row["estimator"], row["seed"]))
-    found: Figures = {"seeds": list(seeds), "summary": summary(rows), "rows": rows}
+    found: Figures = {"seeds": list(seeds), "summary": summary(rows), "against": against(by_cell(rows)), "rows": rows}
     write_figures(path, found)
     return found
 
