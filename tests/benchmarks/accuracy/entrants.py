@@ -1,26 +1,25 @@
 """Who is measured: the precise filter, the paper's models, the raw receiver and rivals, each run on one recording."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from importlib import import_module
 from time import thread_time_ns
-from typing import TypeAlias
+from typing import TYPE_CHECKING
 
 from tests.benchmarks.accuracy.raw import held_fixes
 from tests.benchmarks.accuracy.world import Recording
-from tracker.estimator import Estimator, Origin, Pose
+from tracker.estimator import Estimator, Pose
 from tracker.estimators import SELECTORS, SENSORS, Settings, build
 from tracker.evaluate import Run, follow
 from tracker.family import PaperFamily, follow_family
 from tracker.geomagnetism import declination_rad, magnetic_field
 from tracker.measurements import GpsFix, ImuSample, MagSample, Measurement, Outcome, TruePose
 from tracker.pipeline import Pipeline
-from tracker.rig import Rig
 from tracker.score import RATE_HZ
 from tracker.simulate import START_NS
 
-Rival: TypeAlias = Callable[[Sequence[Measurement], Origin, Rig, Sequence[int]], list[Pose]]
-"""Measurements in order of arrival and the ticks at which poses are wanted."""
+if TYPE_CHECKING:
+    from tests.benchmarks.accuracy.rivals import Rival
 
 RAW = "gps"
 PAPER_MODELS = ("cmm", "famm")
@@ -62,7 +61,7 @@ class _Watch(Pipeline):
         return pose
 
 
-def rivals() -> dict[str, Rival]:
+def rivals() -> "dict[str, Rival]":
     """Return other people's filters by name; each library is imported by who runs it."""
     found: dict[str, Rival] = import_module("tests.benchmarks.accuracy.rivals").RIVALS
     return found

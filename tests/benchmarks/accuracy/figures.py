@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tests.benchmarks.accuracy.entrants import AHEAD_NS, RAW, Watched
 from tests.benchmarks.accuracy.scenarios import DISTURBED_FROM_S, SPELL_S
@@ -20,9 +19,19 @@ WALKED_S, WALKED_M = 30.0, 20.0
 #: A disturbed heading is compared with that of the seconds before, until so long after.
 BEFORE_S, AFTER_S = 10.0, 5.0
 TOLD_S = 60.0
-#: Rivals that tell attitude alone.
+#: Rivals that tell attitude alone, and no north: six axes.
 ATTITUDE_ONLY = ("vqf", "imufusion")
-ATTITUDE_FIGURES = ("heading_deg", "heading_walked_deg", "heading_20m_deg", "tilt_deg", "excursion_deg", "nees_heading")
+#: What the raw receiver does not tell.
+ATTITUDE_FIGURES = (
+    "heading_deg",
+    "heading_walked_deg",
+    "heading_20m_deg",
+    "tilt_deg",
+    "excursion_deg",
+    "jitter_deg",
+    "px_20m",
+    "nees_heading",
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,10 +51,6 @@ class Compared:
     walked_s: Vector
     """(n,) of true walking, since the start."""
     walked_m: Vector
-
-    def mean_square(self, values: Vector, use: NDArray[np.bool_]) -> float | None:
-        """Return the mean of squares of (n,) values over some rows; None where there are none."""
-        return float(np.mean(np.square(values[use]))) if np.any(use) else None
 
 
 def compared(run: Run) -> Compared:
@@ -110,13 +115,12 @@ def _usual(usual: Figures) -> Figures:
 
 def _meant(row: Figures) -> Figures:
     """Return a row without what its estimator does not tell."""
-    name = row["estimator"]
-    if name not in (RAW, *ATTITUDE_ONLY):
-        return row
-    kept = ("scenario", "seed", "estimator", "raw_m", "cpu_us")
-    return {
-        key: value if key in kept or (key in ATTITUDE_FIGURES) == (name != RAW) else None for key, value in row.items()
-    }
+    name, always = row["estimator"], ("scenario", "seed", "estimator", "raw_m", "cpu_us")
+    if name == RAW:
+        return {key: None if key in ATTITUDE_FIGURES else value for key, value in row.items()}
+    if name in ATTITUDE_ONLY:
+        return {key: value if key in (*always, "tilt_deg") else None for key, value in row.items()}
+    return row
 
 
 def _windows(at: Compared) -> Figures:
@@ -130,10 +134,10 @@ def _windows(at: Compared) -> Figures:
 
 
 def _headings(at: Compared) -> Figures:
-    late = at.mean_square(at.heading_rad, at.walked_s >= WALKED_S)
+    late = at.heading_rad[at.walked_s >= WALKED_S]
     far = np.flatnonzero(at.walked_m >= WALKED_M)
     return {
-        "heading_walked_deg": None if late is None else float(np.degrees(np.sqrt(late))),
+        "heading_walked_deg": float(np.degrees(np.sqrt(np.mean(np.square(late))))) if len(late) else None,
         "heading_20m_deg": float(np.degrees(abs(at.heading_rad[far[0]]))) if len(far) else None,
     }
 

@@ -11,6 +11,7 @@ from server.paper.digits import write_figures
 from server.paper.tasks import Task, content_key, progress_bar, run_tasks
 from server.paper.turn import closing_deg
 from tests.benchmarks.accuracy.entrants import PAPER_MODELS, PERIOD_NS, RAW, rivals
+from tests.benchmarks.accuracy.figures import ATTITUDE_ONLY
 from tests.benchmarks.accuracy.goals import BOTH
 from tests.benchmarks.accuracy.log_goals import summary
 from tests.benchmarks.accuracy.raw import held_fixes
@@ -135,13 +136,14 @@ def _raw(result: Run) -> Figures:
 
 def _against_truth(usual: Figures, entrant: str) -> Figures:
     truth = usual["truth"] or {}
-    attitude_only, position_only = entrant in ("vqf", "imufusion"), entrant == RAW
+    attitude_only, position_only = entrant in ATTITUDE_ONLY, entrant == RAW
     places = {"ate_m": "ate_rmse_m", "debiased_m": "ate_debiased_rmse_m", "height_m": "height_rmse_m"}
     places |= {"jitter_m": "jitter_rms_m", "nees_position": "nees_per_dim"}
-    angles = {"heading_deg": "heading_rmse_deg", "tilt_deg": "tilt_rmse_deg", "nees_heading": "nees_heading"}
+    headings = {"heading_deg": "heading_rmse_deg", "nees_heading": "nees_heading"}
     return {
         **{name: None if attitude_only else truth.get(key) for name, key in places.items()},
-        **{name: None if position_only else truth.get(key) for name, key in angles.items()},
+        **{name: None if attitude_only or position_only else truth.get(key) for name, key in headings.items()},
+        "tilt_deg": None if position_only else truth.get("tilt_rmse_deg"),
     }
 
 
@@ -152,7 +154,7 @@ def _course(result: Run) -> Figures:
         return found
     found["first_pose_s"] = first_s = (result.poses[0].t_ns - result.t_start_ns) * 1e-9
     found["covered"] = len(result.poses) / max(1.0, (result.duration_s - first_s) * score.RATE_HZ)
-    if score.known_parts(result.truth).position:
+    if score.known_parts(result.truth).position and result.estimator not in ATTITUDE_ONLY:
         track = score.track(result.poses)
         T_site_map = SiteFrame(result.origin).T_from(result.truth_origin or result.origin)
         truth, known = score.true_track(result.truth, T_site_map, track.t_ns)

@@ -122,6 +122,19 @@ def test_the_raw_receiver_has_a_place_and_no_attitude(recording: Recording) -> N
     assert found["debiased_m"] < found["ate_m"]
 
 
+def test_a_rival_without_place_and_north_is_asked_for_tilt_alone(recording: Recording) -> None:
+    """Its poses stand at the origin, without covariance."""
+    run = blank(recording, "vqf")
+    run.truth = [m for m in recording.measurements if isinstance(m, TruePose)]
+    run.fixes = [m for m in recording.measurements if isinstance(m, GpsFix)]
+    turned = posed(recording, lambda _: ((0.0,) * 3, 2.0))
+    run.poses = [replace(pose, p_site_m=(0.0, 0.0, 0.0), cov=np.zeros((6, 6))) for pose in turned]
+    found = row_of(recording, Watched(run))
+    assert found["tilt_deg"] == pytest.approx(0.0, abs=1e-2)
+    told = {name for name, value in found.items() if value is not None}
+    assert told == {"scenario", "seed", "estimator", "raw_m", "tilt_deg"}
+
+
 def test_what_a_scenario_has_not_is_none(recording: Recording) -> None:
     plain = replace(recording, scenario=SCENARIOS["plain"], outage_s=None, told_ns=[])
     found = row(plain, lambda _: ((1.0, 0.0, 0.0), 0.0))
