@@ -65,6 +65,9 @@ def print_logs(found: Figures, console: Console) -> None:
     """Print the rows of the logs, then what is asked."""
     table = Table("log", "estimator", *(column[0] for column in LOG_COLUMNS))
     for row in found["rows"]:
+        if row["failed"] is not None:
+            table.add_row(row["log"], row["estimator"], "failed")
+            continue
         cells = [_cell(row.get(name), scale, form) for _, name, scale, form in LOG_COLUMNS]
         table.add_row(row["log"], row["estimator"], *cells)
     console.print(table)

@@ -7,7 +7,7 @@ import pytest
 from tests.benchmarks.accuracy.entrants import RAW
 from tests.benchmarks.accuracy.goals import CAMERA, GPS_IMU
 from tests.benchmarks.accuracy.log_goals import plays, summary
-from tests.benchmarks.accuracy.logs import PAPER, entrants, logs
+from tests.benchmarks.accuracy.logs import PAPER, entrants, log_case, logs
 from tests.benchmarks.accuracy.study import RIVALS
 from tests.walks import write_walk
 from tracker.log import Log
@@ -42,6 +42,20 @@ def test_rows_of_a_folder_are_written(folder: Path, tmp_path: Path) -> None:
     assert ours["closing_deg"] is None
     assert found["summary"]["not_played"] == []
     assert (tmp_path / "logs.json").is_file()
+
+
+def test_a_rival_that_gives_up_has_a_row_that_says_so(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One of ours that gives up is an error."""
+
+    def give_up(*_: object) -> None:
+        raise RuntimeError("Indeterminate\nlinear system")
+
+    monkeypatch.setattr("tests.benchmarks.accuracy.logs.rivals", lambda: {"gtsam/batch": give_up})
+    found = log_case(folder / "short.mcap", "gtsam/batch", None)
+    assert found == {"log": "short", "estimator": "gtsam/batch", "failed": "Indeterminate linear system"}
+    monkeypatch.setattr("tests.benchmarks.accuracy.logs.run", give_up)
+    with pytest.raises(RuntimeError, match="Indeterminate"):
+        log_case(folder / "short.mcap", GPS_IMU, None)
 
 
 def row(log: str, estimator: str, **figures: float) -> Figures:
