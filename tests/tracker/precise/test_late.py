@@ -46,7 +46,7 @@ DELAYS: dict[str, Delay] = {
 }
 
 
-@settings(max_examples=3)
+@settings(max_examples=2)
 @given(seed=st.integers(0, 2**32))
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("which", DELAYS)

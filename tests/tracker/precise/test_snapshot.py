@@ -14,7 +14,7 @@ def whole() -> dict[str, list[tuple[object, ...]]]:
     return {name: feed(estimator(name), stream()) for name in NAMES}
 
 
-@settings(max_examples=5)
+@settings(max_examples=4)
 @given(cut=st.integers(0, len(stream()) // 10), astray=st.integers(1, 400))
 @pytest.mark.parametrize("name", NAMES)
 def test_a_run_goes_on_from_a_snapshot(
