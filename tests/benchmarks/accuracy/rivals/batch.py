@@ -4,11 +4,9 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-import gtsam
-
-from tests.benchmarks.accuracy.rivals.graph import Believed, bias_key, motion_to, pose_key, start_values, whole
+from tests.benchmarks.accuracy.rivals.graph import Believed, bias_key, motion_to, start_values, whole
 from tests.benchmarks.accuracy.rivals.nodes import Node, Nodes
-from tests.benchmarks.accuracy.rivals.solution import State, in_site, solve, state_of
+from tests.benchmarks.accuracy.rivals.solution import State, covariances, solve, state_of
 from tests.benchmarks.accuracy.rivals.track import InertialTrack
 from tracker.estimator import NO_MOTION_MODEL, Origin, Pose
 from tracker.geodesy import gravity_m_s2
@@ -37,10 +35,8 @@ def by_batch(measurements: Sequence[Measurement], origin: Origin, rig: Rig, tick
         motions = [motion_to(i, nodes, gathered.track, biases[i - 1], believed) for i in range(1, len(nodes))]
         graph = whole(nodes, motions, gathered.track, values, believed)
         values = solve(graph, values)
-    marginals = gtsam.Marginals(graph, values)
     states = [state_of(values, index, node.t_ns) for index, node in enumerate(nodes)]
-    covs = [in_site(marginals.marginalCovariance(pose_key(i)), state) for i, state in enumerate(states)]
-    return [*_between_nodes(states, covs, gathered.track, sorted(ticks))]
+    return [*_between_nodes(states, covariances(graph, values, states), gathered.track, sorted(ticks))]
 
 
 def _measured(measurement: Measurement) -> tuple[int, bool]:

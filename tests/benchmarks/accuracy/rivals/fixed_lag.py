@@ -15,13 +15,15 @@ from tests.benchmarks.accuracy.rivals.online import follow
 from tests.benchmarks.accuracy.rivals.solution import State, covariance_of, solve, state_of
 from tracker.estimator import NO_MOTION_MODEL, Origin, Pose
 from tracker.geodesy import gravity_m_s2
-from tracker.measurements import ImuSample, Matrix, Measurement
+from tracker.measurements import Matrix, Measurement
 from tracker.precise.settings import PreciseSettings
 from tracker.rig import Rig
 
 LAG_S = 10.0
 #: North is told when its standard deviation is below this, rad; a walk of more nodes than this goes on without.
-TOLD_RAD, MOST_NODES = 0.1, 150
+TOLD_RAD, MOST_NODES = 0.1, 120
+#: So many nodes are solved all together at every new one, twice as many at every second one, and so on.
+OFTEN = 30
 
 
 class FixedLag:
@@ -36,7 +38,7 @@ class FixedLag:
         self._has_fix = False
         self._motions: list[gtsam.PreintegratedCombinedMeasurements] = []
         """Between the nodes, without biases; only until north is told."""
-        self._smoother: gtsam.BatchFixedLagSmoother | None = None
+        self._smoother: gtsam.IncrementalFixedLagSmoother | None = None
         self._values = gtsam.Values()
         """Of the newest node at least."""
         self._state: State | None = None
@@ -50,11 +52,12 @@ class FixedLag:
             self._has_fix |= node.fix is not None
             if self._smoother is not None:
                 self._extend(self._smoother)
-            elif self._has_fix:
+            elif self._has_fix and len(self._nodes) % (1 + len(self._nodes) // OFTEN) == 0:
                 self._solve_all()
-        if self._state is not None and isinstance(measurement, ImuSample):
+        newest_ns = self._gathered.track.newest_ns
+        if self._state is not None and newest_ns is not None:
             nav, biases = self._state
-            self._state = self._gathered.track.carried(nav, biases, measurement.t_ns), biases
+            self._state = self._gathered.track.carried(nav, biases, newest_ns), biases
 
     def pose(self, t_ns: int) -> Pose | None:
         """Return the pose at a time, which is now; None before the first fix."""
@@ -80,11 +83,11 @@ class FixedLag:
         biases = [self._values.atConstantBias(walk.bias_key(index)) for index in range(len(nodes))]
         motions = [walk.motion_to(i, nodes, track, biases[i - 1], believed) for i in range(1, len(nodes))]
         graph = walk.whole(nodes, motions, track, self._values, believed)
-        self._smoother = gtsam.BatchFixedLagSmoother(LAG_S)
+        self._smoother = _smoother()
         self._smoother.update(graph, self._values, self._stamps(range(len(nodes))))
         self._values = self._smoother.calculateEstimate()
 
-    def _extend(self, smoother: gtsam.BatchFixedLagSmoother) -> None:
+    def _extend(self, smoother: gtsam.IncrementalFixedLagSmoother) -> None:
         index, track, old = len(self._nodes) - 1, self._gathered.track, self._values
         before, node = self._nodes[-2:]
         bias = old.atConstantBias(walk.bias_key(index - 1))
@@ -96,6 +99,7 @@ class FixedLag:
         for factor in walk.node_factors(index, node, track, bias, self._believed):
             graph.push_back(factor)
         smoother.update(graph, walk.next_values(index, old, motion), self._stamps([index]))
+        smoother.update()  # what moved far is linearised again
         self._values = smoother.calculateEstimate()
         self._show(smoother.getFactors(), self._values)
 
@@ -107,6 +111,14 @@ class FixedLag:
         index = len(self._nodes) - 1
         self._state = state_of(values, index, self._nodes[index].t_ns)
         self._cov = covariance_of(graph, values, index)
+
+
+def _smoother() -> gtsam.IncrementalFixedLagSmoother:
+    params = gtsam.ISAM2Params()
+    params.setFactorization("QR")  # Cholesky refuses what is known ill beside what is known well (see `covariances`)
+    params.setRelinearizeThreshold(0.01)
+    params.relinearizeSkip = 1
+    return gtsam.IncrementalFixedLagSmoother(LAG_S, params)
 
 
 def by_fixed_lag(measurements: Sequence[Measurement], origin: Origin, rig: Rig, ticks: Sequence[int]) -> list[Pose]:

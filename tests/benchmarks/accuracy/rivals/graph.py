@@ -1,5 +1,6 @@
 """The factor graph of a walk: a pose, velocity, biases and the receiver's error at every node, the inertial samples between."""
 
+from cmath import phase
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -24,7 +25,8 @@ WALK_M_S = (1.2, 1.2, 0.3)
 GYRO_SCALE, ACCEL_SCALE = 0.005, 0.0025
 #: Of the integration itself.
 INTEGRATION_M2_S = 1e-8
-NOTHING = 1e3
+#: Of accelerometer biases, m/s2, in a factor that says nothing of them.
+UNSAID_M_S2 = 1e3
 
 
 def pose_key(index: int) -> int:
@@ -158,7 +160,7 @@ def _gait_factors(
         model = gtsam.noiseModel.Diagonal.Sigmas(np.array(WALK_M_S))
         found.append(gtsam.PriorFactorVector(velocity_key(index), np.zeros(3), model))
     if rate is not None:
-        sigmas = np.repeat([NOTHING, settings.still_rate_sigma_rad_s], 3)
+        sigmas = np.repeat([UNSAID_M_S2, settings.still_rate_sigma_rad_s], 3)
         offset = gtsam.imuBias.ConstantBias(np.zeros(3), np.array(rate))
         found.append(gtsam.PriorFactorConstantBias(bias_key(index), offset, gtsam.noiseModel.Diagonal.Sigmas(sigmas)))
     return found
@@ -170,8 +172,7 @@ def start_values(nodes: Sequence[Node], track: InertialTrack) -> gtsam.Values:
     at = np.array([node.t_ns for node in nodes if node.fix is not None], float)
     fixes = np.array([node.fix.p_site_m for node in nodes if node.fix is not None]).reshape(-1, 3)
     for index, node in enumerate(nodes):
-        turn, _ = alignment.turn(node.t_ns)
-        wxyz = normalise(multiply(wxyz_from_yaw(float(np.angle(turn))), track.level_at(node.t_ns)))
+        wxyz = normalise(multiply(wxyz_from_yaw(phase(alignment.turn(node.t_ns))), track.level_at(node.t_ns)))
         p = [float(np.interp(node.t_ns, at, fixes[:, axis])) for axis in range(3)] if len(at) else [0.0] * 3
         values.insert(pose_key(index), gtsam.Pose3(gtsam.Rot3.Quaternion(*wxyz), np.array(p)))
         values.insert(velocity_key(index), np.array(node.v_site_m_s or (0.0, 0.0, 0.0)))
