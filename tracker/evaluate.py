@@ -51,13 +51,13 @@ class Run:
 
 
 def log_origin(log: Log) -> Origin:
-    """Return where a log is scored: its truth's origin, else its first fix, else (no position at all) the equator."""
+    """Return where a log is scored: its truth's origin, else its first fix, else half way to the pole, of mean gravity."""
     info = log.info
     if info.truth_origin is not None:
         return info.truth_origin
     if info.first_fix is not None:
         return Origin(info.first_fix.lat_deg, info.first_fix.lon_deg, info.first_fix.h_ellipsoid_m)
-    return Origin(0.0, 0.0, 0.0)
+    return Origin(45.0, 0.0, 0.0)
 
 
 def make_pipeline(

@@ -20,27 +20,27 @@ class Blend:
     Kept at the filter's time it does not depend on when a measurement arrived, only on when it was made.
     """
 
-    def __init__(self, time_s: float, lag_s: float) -> None:
-        """`time_s` is that of the decay, `lag_s` how far behind what is shown the filter is."""
-        self._time_s, self._lag_s = time_s, lag_s
+    def __init__(self, time_s: float, turn_time_s: float, lag_s: float) -> None:
+        """The decays of position and velocity, and of attitude; `lag_s` is how far behind what is shown the filter is."""
+        self._time_s, self._turn_time_s, self._lag_s = time_s, turn_time_s, lag_s
         self._t_ns = 0
         self._p_m = self._v_m_s = self._turn_rad = _ZERO
 
     def corrected(self, before: Navigation, after: Navigation) -> None:
         """Take what the state at one time was before and after a correction."""
-        keep = self._left((after.t_ns - self._t_ns) * 1e-9)
+        keep, keep_turn = self._left((after.t_ns - self._t_ns) * 1e-9)
         p = _sum(_scaled(self._p_m, keep), _difference(before.p_m, after.p_m))
         v = _sum(_scaled(self._v_m_s, keep), _difference(before.v_m_s, after.v_m_s))
         turned = log(multiply(before.wxyz_site_body, conjugate(after.wxyz_site_body)))
-        turn = _sum(_scaled(self._turn_rad, keep), turned)
+        turn = _sum(_scaled(self._turn_rad, keep_turn), turned)
         self._p_m, self._v_m_s = (p, v) if hypot(*p) <= _LARGEST_M else (_ZERO, _ZERO)
         self._turn_rad = turn if hypot(*turn) <= _LARGEST_RAD else _ZERO
         self._t_ns = after.t_ns
 
     def shown(self, nav: Navigation, t_ns: int) -> Navigation:
         """Return the state, at its own time, that is to be carried on and shown at t_ns."""
-        keep = self._left((t_ns - self._t_ns) * 1e-9 - self._lag_s)
-        turn = rotation_exp(_scaled(self._turn_rad, keep))
+        keep, keep_turn = self._left((t_ns - self._t_ns) * 1e-9 - self._lag_s)
+        turn = rotation_exp(_scaled(self._turn_rad, keep_turn))
         return Navigation(
             nav.t_ns,
             _sum(nav.p_m, _scaled(self._p_m, keep)),
@@ -50,11 +50,13 @@ class Blend:
 
     def offset(self, t_ns: int) -> Matrix:
         """Return how far what is shown at t_ns is from the filter's state, (9,): position, velocity and rotation, site axes."""
-        keep = self._left((t_ns - self._t_ns) * 1e-9 - self._lag_s)
-        return keep * np.array((*self._p_m, *self._v_m_s, *self._turn_rad))
+        keep, keep_turn = self._left((t_ns - self._t_ns) * 1e-9 - self._lag_s)
+        left = (_scaled(self._p_m, keep), _scaled(self._v_m_s, keep), _scaled(self._turn_rad, keep_turn))
+        return np.concatenate(left)
 
-    def _left(self, after_s: float) -> float:
-        return exp(-max(0.0, after_s) / self._time_s)
+    def _left(self, after_s: float) -> tuple[float, float]:
+        after_s = max(0.0, after_s)
+        return exp(-after_s / self._time_s), exp(-after_s / self._turn_time_s)
 
 
 def _sum(a: Vector3, b: Vector3) -> Vector3:

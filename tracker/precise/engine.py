@@ -15,6 +15,7 @@ from tracker.measurements import (
     GpsVelocity,
     ImuSample,
     MagSample,
+    Matrix,
     Sighting,
     Standpoint,
     Vector3,
@@ -31,6 +32,7 @@ from tracker.precise.hypotheses import Hypotheses
 from tracker.precise.landmarks import Landmarks
 from tracker.precise.navigation import Biases, Navigation, mean, sample_between
 from tracker.precise.settings import PreciseSettings
+from tracker.precise.stride import Stride
 from tracker.precise.timeline import Keyframe, Timed
 from tracker.rig import Rig
 
@@ -67,6 +69,7 @@ class Engine:
         self._compass = compass
         self._activity = Activity()
         self._pace = Pace()
+        self._stride = Stride()
         self._start: list[ImuSample] = []
         self._last: ImuSample | None = None
         self.hypotheses: Hypotheses | None = None
@@ -179,12 +182,29 @@ class Engine:
                 noise = settings.still_rate_sigma_rad_s**2 * _I3
                 hypotheses.correct(lambda f: f.correct(*observations.turn_rate(f, activity.gyro_mean_rad_s), noise))
         elif self._is_blind(t_ns):
-            expected = self._pace.velocity_m_s((1.0, 0.0)) if self.fix_ns is not None else (0.0, 0.0, 0.0)
-            sigma = 0.6 if self.fix_ns is not None else 1.0
-            hypotheses.correct(lambda f: f.correct(*observations.velocity(f, expected), sigma**2 * _I3, gated=False))
+            expected, noise = self._walk_on()
+            hypotheses.correct(lambda f: f.correct(*observations.velocity(f, expected), noise, gated=False))
         else:
-            self._pace.learn(self.best.nav.v_m_s, (1.0, 0.0))
+            v_m_s = self.best.nav.v_m_s
+            self._pace.learn(v_m_s, (1.0, 0.0))
+            self._stride.learn(activity.force_spread_m_s2, hypot(v_m_s[0], v_m_s[1]))
         self._stand_on_ground()
+
+    def _walk_on(self) -> tuple[Vector3, Matrix]:
+        """Return the velocity of one who goes on as before, and its covariance."""
+        shaken = self._activity.force_spread_m_s2
+        x, y, _ = self._pace.velocity_m_s((1.0, 0.0)) if self.fix_ns is not None else (0.0, 0.0, 0.0)
+        length = hypot(x, y)
+        if length == 0.0:
+            # one who holds the rig in the hands moves it, the more the harder, and it stays about where it is
+            return (0.0, 0.0, 0.0), min(0.3 + 0.1 * shaken, 1.6) ** 2 * _I3
+        settings, speed = self._settings, self._stride.speed_m_s(shaken)
+        ahead = np.array([x / length, y / length, 0.0])
+        noise = settings.stride_sigma_m_s**2 * _I3
+        # people look aside: the facing tells the speed better than the way
+        noise += settings.facing_sigma_m_s**2 * np.diag([1.0, 1.0, 0.0])
+        noise -= settings.facing_sigma_m_s**2 * np.outer(ahead, ahead)
+        return (speed * x / length, speed * y / length, 0.0), noise
 
     def _is_blind(self, t_ns: int) -> bool:
         """Whether the receiver has been silent for longer than its usual second."""

@@ -1,8 +1,8 @@
 """The error of the filter: its layout, what a step makes of it, and what it is at the start.
 
-The error is (dp, dv, dtheta, dbg, dba, e, m, clones): position, velocity and rotation vector in site axes, biases in body axes,
-nine states of the receiver's error (unit variance; three correlation times for each axis), the magnetic deviation, and for every
-held picture its position and rotation. dtheta is on the left: R_true = Exp(dtheta) R.
+The error is (dp, dv, dtheta, dbg, dba, e, m, s, clones): position, velocity and rotation vector in site axes, biases in body axes,
+nine states of the receiver's error (unit variance; three correlation times for each axis), the magnetic deviation, the scale of
+turns about the body's z, and for every held picture its position and rotation. dtheta is on the left: R_true = Exp(dtheta) R.
 
 Reference:
     Sola, Quaternion kinematics for the error-state Kalman filter, 2017, chapter 7 (global angular error).
@@ -17,7 +17,11 @@ P, V, THETA, BG, BA = slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 12), slice
 #: The receiver's error: first the three axes of the shortest correlation time.
 GPS_ERROR = slice(15, 24)
 MAGNETIC = 24
-SIZE = 25
+#: States that forget: the receiver's error and the magnetic deviation.
+FORGETTING = slice(15, 25)
+#: A walk round a square turns one way: half a percent of a hundred quarter turns is more than the receiver can correct.
+TURN_SCALE = 25
+SIZE = 26
 
 
 class ProcessNoise:
@@ -43,21 +47,22 @@ class ProcessNoise:
         return self._kept
 
     def added(self, dt_s: float) -> Matrix:
-        """(25,) variances."""
+        """(26,) variances."""
         added = self._rates * dt_s
         added[P] = self.velocity * dt_s**3 / 3.0
-        added[15:] = self._steady * (1.0 - self.kept(dt_s) ** 2)
+        added[FORGETTING] = self._steady * (1.0 - self.kept(dt_s) ** 2)
         return added
 
 
 def start_covariance(settings: PreciseSettings, position_m: Vector3, velocity_m_s: float, yaw_rad: float) -> Matrix:
-    """Return the (25, 25) covariance of a start: standard deviations of position, velocity and yaw as given."""
+    """Return the (26, 26) covariance of a start: standard deviations of position, velocity and yaw as given."""
     sigma = np.zeros(SIZE)
     sigma[P], sigma[V] = position_m, velocity_m_s
     sigma[THETA] = (settings.tilt_rad, settings.tilt_rad, yaw_rad)
     sigma[BG], sigma[BA] = settings.gyro_bias_rad_s, settings.accel_bias_m_s2
     sigma[GPS_ERROR] = np.sqrt(np.repeat(settings.gps_error_share, 3))
     sigma[MAGNETIC] = settings.magnetic_deviation_rad
+    sigma[TURN_SCALE] = settings.turn_scale
     return np.diag(sigma**2)
 
 

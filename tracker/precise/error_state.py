@@ -18,11 +18,20 @@ from tracker.geometry import conjugate, matrix_from_wxyz, multiply, normalise
 from tracker.geometry import exp as rotation_exp
 from tracker.geometry import log as log_rotation
 from tracker.measurements import Matrix, Vector3
-from tracker.precise.error_model import GPS_ERROR, SIZE, P, ProcessNoise, inertial_transition
+from tracker.precise.error_model import (
+    FORGETTING,
+    GPS_ERROR,
+    MAGNETIC,
+    SIZE,
+    TURN_SCALE,
+    P,
+    ProcessNoise,
+    inertial_transition,
+)
 from tracker.precise.navigation import Biases, Navigation, advance
 from tracker.precise.settings import PreciseSettings
 
-_INERTIAL = slice(0, 15)
+_INERTIAL, _MOTION = slice(0, 15), slice(0, 9)
 #: Of a position that is not known. The first fix then splits it with the receiver's error as it should be.
 _UNKNOWN_M2 = 1e4
 #: Covariance is carried on in steps of about this long: attitude hardly turns within one.
@@ -62,7 +71,7 @@ class ErrorState:
     def __init__(
         self, settings: PreciseSettings, nav: Navigation, biases: Biases, covariance: Matrix, gravity_m_s2: float
     ) -> None:
-        """`covariance` is (25, 25), without clones."""
+        """`covariance` is (26, 26), without clones."""
         self.settings = settings
         self.nav = nav
         self.biases = biases
@@ -96,16 +105,18 @@ class ErrorState:
         R_end = matrix_from_wxyz(end.wxyz_site_body)
         gained = np.array(end.v_m_s) - np.array(start.v_m_s)
         gained[2] += self._gravity * dt
-        Phi = inertial_transition(dt, 0.5 * (self._chunk_R + R_end), gained)
+        R_mean = 0.5 * (self._chunk_R + R_end)
+        Phi = inertial_transition(dt, R_mean, gained)
         cov = self.covariance
         cov[_INERTIAL, _INERTIAL] = Phi @ cov[_INERTIAL, _INERTIAL] @ Phi.T
         cov[_INERTIAL, 15:] = Phi @ cov[_INERTIAL, 15:]
         cov[15:, _INERTIAL] = cov[_INERTIAL, 15:].T
         keep = self._noise.kept(dt)
-        cov[15:SIZE, :] *= keep[:, None]
-        cov[:, 15:SIZE] *= keep
+        cov[FORGETTING, :] *= keep[:, None]
+        cov[:, FORGETTING] *= keep
         cov[_DIAGONAL] += self._noise.added(dt)
         turned = log_rotation(multiply(end.wxyz_site_body, conjugate(start.wxyz_site_body)))
+        self._scale_turn(cov, R_mean[:, 2], turned, gained, dt)
         index = np.arange(3)
         cov[6 + index, 6 + index] += (self.settings.gyro_scale * hypot(*turned)) ** 2
         shaken = np.array(end.v_m_s) - np.array(start.v_m_s)
@@ -116,6 +127,15 @@ class ErrorState:
         self.gps_error = keep[:9] * self.gps_error
         self.magnetic_rad *= float(keep[9])
         self._chunk_nav, self._chunk_R = end, R_end
+
+    @staticmethod
+    def _scale_turn(cov: Matrix, up: Matrix, turned_rad: Vector3, gained_m_s: Matrix, dt_s: float) -> None:
+        """Add to the motion what the scale of turns is unsure of; `up` is the body's z in site, (3,)."""
+        turn = -float(up @ turned_rad) * up
+        bent = np.cross(gained_m_s, turn)
+        by_scale = np.concatenate([-dt_s / 6.0 * bent, -0.5 * bent, turn])
+        cov[_MOTION, :] += np.outer(by_scale, cov[TURN_SCALE, :])
+        cov[:, _MOTION] += np.outer(cov[:, TURN_SCALE], by_scale)
 
     # -- update -------------------------------------------------------------------------------------------------------
 
@@ -180,9 +200,10 @@ class ErrorState:
         q = normalise(multiply(rotation_exp((e[6], e[7], e[8])), self.nav.wxyz_site_body))
         self.nav = Navigation(self.nav.t_ns, (px + e[0], py + e[1], pz + e[2]), (vx + e[3], vy + e[4], vz + e[5]), q)
         (gx, gy, gz), (ax, ay, az) = self.biases.gyro_rad_s, self.biases.accel_m_s2
-        self.biases = Biases((gx + e[9], gy + e[10], gz + e[11]), (ax + e[12], ay + e[13], az + e[14]))
+        scale = self.biases.turn_scale + e[TURN_SCALE]
+        self.biases = Biases((gx + e[9], gy + e[10], gz + e[11]), (ax + e[12], ay + e[13], az + e[14]), scale)
         self.gps_error = self.gps_error + error[GPS_ERROR]
-        self.magnetic_rad += e[24]
+        self.magnetic_rad += e[MAGNETIC]
         for index, clone in enumerate(self.clones):
             d = e[SIZE + 6 * index : SIZE + 6 * index + 6]
             clone_q = normalise(multiply(rotation_exp((d[3], d[4], d[5])), clone.wxyz_site_body))

@@ -72,8 +72,12 @@ class PreciseEstimator:
         self._timeline = Timeline()
         compass = deepcopy(self._compass)
         self._engine = Engine(self._settings, self._site, self._rig, compass, self._gravity, self._eyes_z_m)
-        self._blend = Blend(self._settings.blend_s, self._settings.lag_s)
+        self._blend = self._new_blend()
         self._free = FreeIntegral(self._gravity, self._lag_ns)
+
+    def _new_blend(self) -> Blend:
+        settings = self._settings
+        return Blend(settings.blend_s, settings.blend_turn_s, settings.lag_s)
 
     @property
     def name(self) -> str:
@@ -131,7 +135,7 @@ class PreciseEstimator:
         engine.take(measurement, following)
         after = engine.best.nav
         if engine.fix_ns is not None and not had_place:
-            self._blend = Blend(self._settings.blend_s, self._settings.lag_s)
+            self._blend = self._new_blend()
         elif engine.hypotheses.corrections != corrections:
             self._blend.corrected(self._free.carry(before, after.t_ns), after)
 

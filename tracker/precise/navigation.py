@@ -22,6 +22,8 @@ class Biases:
 
     gyro_rad_s: Vector3 = (0.0, 0.0, 0.0)
     accel_m_s2: Vector3 = (0.0, 0.0, 0.0)
+    turn_scale: float = 0.0
+    """By what share turns about the body's z are told too large."""
 
 
 def advance(
@@ -33,7 +35,7 @@ def advance(
     """
     dt = (t_ns - nav.t_ns) * 1e-9
     (gx, gy, gz), (bx, by, bz) = gyro_rad_s, biases.gyro_rad_s
-    wx, wy, wz = (gx - bx) * dt, (gy - by) * dt, (gz - bz) * dt
+    wx, wy, wz = (gx - bx) * dt, (gy - by) * dt, (gz - bz) * (1.0 - biases.turn_scale) * dt
     middle = multiply(nav.wxyz_site_body, exp((0.5 * wx, 0.5 * wy, 0.5 * wz)))
     (ax, ay, az), (cx, cy, cz) = accel_m_s2, biases.accel_m_s2
     fx, fy, fz = rotate(middle, (ax - cx, ay - cy, az - cz))

@@ -17,11 +17,13 @@ class PreciseSettings:
     """White noise density; a few times the sensor's own, for scale and misalignment errors."""
     accel_noise_m_s2_sqrt_hz: float = 8e-3
     """White noise density of the accelerometer."""
-    gyro_scale: float = 0.01
+    gyro_scale: float = 0.005
     """Error of scale and axes, as a share of each turn: what a fast head turn adds to the doubt of attitude."""
     accel_scale: float = 0.005
     """Error of scale and axes, as a share of each change of velocity, gravity's included."""
-    gyro_bias_walk_rad_s2_sqrt_hz: float = 5e-5
+    turn_scale: float = 0.01
+    """Standard deviation of the scale of turns about the body's z, before anything was measured."""
+    gyro_bias_walk_rad_s2_sqrt_hz: float = 3e-5
     """How fast the bias wanders."""
     accel_bias_walk_m_s3_sqrt_hz: float = 5e-4
     """How fast the bias wanders."""
@@ -41,7 +43,7 @@ class PreciseSettings:
     """For a receiver that states none."""
     gps_floor_m: float = 0.3
     """A receiver that states less is not believed."""
-    gps_velocity_sigma_m_s: float = 0.12
+    gps_velocity_sigma_m_s: float = 0.1
     """White noise of a horizontal velocity; half as much again of the vertical one."""
     gate_nis: float = 9.0
     """Per dimension: what lies further out counts for less and less,"""
@@ -49,6 +51,10 @@ class PreciseSettings:
     """and beyond this for nothing."""
     insist: int = 5
     """So many refused fixes in a row are believed."""
+    stride_sigma_m_s: float = 0.6
+    """Of the speed that steps tell, four times a second, where the receiver tells none."""
+    facing_sigma_m_s: float = 0.6
+    """... and across the way that the walker faces."""
     still_sigma_m_s: float = 0.03
     """A head that stands sways by this much."""
     still_rate_sigma_rad_s: float = 0.012
@@ -74,8 +80,10 @@ class PreciseSettings:
     """Of a direction of travel, at best;"""
     vision_point_px: float = 6.0
     """and the square of this, by the parallax in pixels, where that is worse."""
-    blend_s: float = 0.8
+    blend_s: float = 1.8
     """A correction moves what is shown with this time constant: a temple that jumps is worse than one that is off."""
+    blend_turn_s: float = 0.6
+    """... and with this one it turns what is shown."""
     hypotheses: int = 8
     """So many headings are tried where motion must tell north."""
     converged_rad: float = 5.0 * pi / 180.0

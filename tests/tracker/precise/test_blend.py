@@ -31,7 +31,7 @@ def _assert_same(a: Navigation, b: Navigation) -> None:
 
 @given(offsets, turns)
 def test_no_jump_and_no_remainder(by_m: tuple[float, ...], turn_rad: tuple[float, ...]) -> None:
-    blend, corrected = Blend(0.8, 0.5), _moved(START, by_m, turn_rad)
+    blend, corrected = Blend(0.8, 0.8, 0.5), _moved(START, by_m, turn_rad)
     blend.corrected(START, corrected)
     _assert_same(blend.shown(corrected, S + LAG_NS), START)
     _assert_same(blend.shown(corrected, 20 * S), corrected)
@@ -42,7 +42,7 @@ def test_no_jump_and_no_remainder(by_m: tuple[float, ...], turn_rad: tuple[float
 @given(offsets, offsets)
 def test_a_second_correction_does_not_lose_the_first(first_m: tuple[float, ...], second_m: tuple[float, ...]) -> None:
     """What is shown just before it is shown just after it."""
-    blend, level, later = Blend(0.8, 0.5), (0.0, 0.0, 0.0), START._replace(t_ns=2 * S)
+    blend, level, later = Blend(0.8, 0.8, 0.5), (0.0, 0.0, 0.0), START._replace(t_ns=2 * S)
     blend.corrected(START, _moved(START, first_m, level))
     now_ns, before = 2 * S + LAG_NS, _moved(later, first_m, level)
     shown = blend.shown(before, now_ns)
@@ -52,7 +52,7 @@ def test_a_second_correction_does_not_lose_the_first(first_m: tuple[float, ...],
 
 
 def test_a_new_beginning_is_shown_at_once() -> None:
-    blend, far = Blend(0.8, 0.5), _moved(START, (30.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    blend, far = Blend(0.8, 0.8, 0.5), _moved(START, (30.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     blend.corrected(START, far)
     _assert_same(blend.shown(far, S), far)
     turned = _moved(START, (0.0, 0.0, 0.0), (0.0, 0.0, 0.5))
@@ -62,7 +62,7 @@ def test_a_new_beginning_is_shown_at_once() -> None:
 
 @given(offsets, turns)
 def test_the_offset_is_what_is_shown_less_the_state(by_m: tuple[float, ...], turn_rad: tuple[float, ...]) -> None:
-    blend, corrected = Blend(0.8, 0.5), _moved(START, by_m, turn_rad)
+    blend, corrected = Blend(0.8, 0.8, 0.5), _moved(START, by_m, turn_rad)
     blend.corrected(START, corrected)
     shown, offset = blend.shown(corrected, 2 * S), blend.offset(2 * S)
     assert offset[:3] == pytest.approx(np.subtract(shown.p_m, corrected.p_m))
