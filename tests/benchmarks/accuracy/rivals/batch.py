@@ -2,7 +2,10 @@
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
+
+import gtsam
 
 from tests.benchmarks.accuracy.rivals.graph import Believed, bias_key, motion_to, start_values, whole
 from tests.benchmarks.accuracy.rivals.nodes import Node, Nodes
@@ -18,25 +21,79 @@ from tracker.rig import Rig
 
 #: The motions between nodes are integrated anew with the biases found, and the graph solved again.
 ROUNDS = 2
+#: Of the gyroscope's scale: its standard deviation, what is tried to either side, and the most that is believed.
+TURN_SCALE, TRIED_SCALE, LARGEST_SCALE = 0.01, 0.005, 0.03
+
+
+@dataclass(frozen=True)
+class Solved:
+    """The most likely walk."""
+
+    nodes: list[Node]
+    track: InertialTrack
+    graph: gtsam.NonlinearFactorGraph
+    values: gtsam.Values
 
 
 def by_batch(measurements: Sequence[Measurement], origin: Origin, rig: Rig, ticks: Sequence[int]) -> list[Pose]:
     """Return the poses at ticks between the first node and the last inertial sample; none of a walk without a fix."""
-    settings = PreciseSettings()
-    gathered, nodes = Nodes(settings, origin), list[Node]()
-    for measurement in sorted(measurements, key=_measured):
-        nodes += gathered.add(measurement)
+    ordered = sorted(measurements, key=_measured)
+    believed = Believed(PreciseSettings(), rig, gravity_m_s2(origin.lat_deg, origin.h_ellipsoid_m))
+    nodes, _ = _gathered(0.0, ordered, origin, believed)
     if not any(node.fix is not None for node in nodes):
         return []
-    believed = Believed(settings, rig, gravity_m_s2(origin.lat_deg, origin.h_ellipsoid_m))
-    values = start_values(nodes, gathered.track)
-    for _ in range(ROUNDS):
+    scale = _turn_scale(ordered, origin, believed)
+    solved = solved_with(scale, ordered, origin, believed, ROUNDS)
+    states = [state_of(solved.values, index, node.t_ns) for index, node in enumerate(solved.nodes)]
+    covs = covariances(solved.graph, solved.values, states)
+    return [*_between_nodes(states, covs, solved.track, sorted(ticks))]
+
+
+def _turn_scale(measurements: Sequence[Measurement], origin: Origin, believed: Believed) -> float:
+    """Return by which share the gyroscope tells too much of turns about the body's z, which is most of a walk's turning.
+
+    GTSAM's inertial factors know no scale. The graph's error as a function of it, all else being at its best, is a parabola, whose
+    lowest point three solutions tell.
+    """
+    low, middle, high = (
+        _error(solved_with(scale, measurements, origin, believed, rounds=1)) + 0.5 * (scale / TURN_SCALE) ** 2
+        for scale in (-TRIED_SCALE, 0.0, TRIED_SCALE)
+    )
+    curvature = low - 2.0 * middle + high
+    if curvature <= 0.0:
+        return 0.0
+    best = 0.5 * TRIED_SCALE * (low - high) / curvature
+    return min(max(best, -LARGEST_SCALE), LARGEST_SCALE)
+
+
+def _error(solved: Solved) -> float:
+    return float(solved.graph.error(solved.values))
+
+
+def solved_with(
+    scale: float, measurements: Sequence[Measurement], origin: Origin, believed: Believed, rounds: int
+) -> Solved:
+    """Return the most likely walk if the gyroscope's z tells too much by a share; `measurements` in order of measuring."""
+    nodes, track = _gathered(scale, measurements, origin, believed)
+    values = start_values(nodes, track)
+    for _ in range(rounds):
         biases = [values.atConstantBias(bias_key(index)) for index in range(len(nodes))]
-        motions = [motion_to(i, nodes, gathered.track, biases[i - 1], believed) for i in range(1, len(nodes))]
-        graph = whole(nodes, motions, gathered.track, values, believed)
+        motions = [motion_to(i, nodes, track, biases[i - 1], believed) for i in range(1, len(nodes))]
+        graph = whole(nodes, motions, track, values, believed)
         values = solve(graph, values)
-    states = [state_of(values, index, node.t_ns) for index, node in enumerate(nodes)]
-    return [*_between_nodes(states, covariances(graph, values, states), gathered.track, sorted(ticks))]
+    return Solved(nodes, track, graph, values)
+
+
+def _gathered(
+    scale: float, measurements: Sequence[Measurement], origin: Origin, believed: Believed
+) -> tuple[list[Node], InertialTrack]:
+    gathered, nodes = Nodes(believed.settings, origin), list[Node]()
+    for measurement in measurements:
+        if isinstance(measurement, ImuSample):
+            x, y, z = measurement.gyro_rad_s
+            measurement = replace(measurement, gyro_rad_s=(x, y, z / (1.0 + scale)))
+        nodes += gathered.add(measurement)
+    return nodes, gathered.track
 
 
 def _measured(measurement: Measurement) -> tuple[int, bool]:

@@ -20,9 +20,9 @@ from tracker.rig import Rig
 UNKNOWN_M, UNKNOWN_M_S, UNKNOWN_RAD = 100.0, 3.0, 3.0
 #: Where the receiver is silent: people walk no faster than about this, and hardly up or down.
 WALK_M_S = (1.2, 1.2, 0.3)
-#: Errors of scale and axes as shares of what was felt. They are half of `PreciseSettings`, as is best on simulated walks: here one
-#: error holds for a second of samples, there each 20 ms have their own.
-GYRO_SCALE, ACCEL_SCALE = 0.005, 0.0025
+#: Errors of scale and axes as shares of what was felt; smaller than those of `PreciseSettings`, as is best on simulated walks: here
+#: one error holds for a second of samples, there each 20 ms have their own.
+GYRO_SCALE, ACCEL_SCALE = 0.003, 0.0025
 #: Of the integration itself.
 INTEGRATION_M2_S = 1e-8
 #: Of accelerometer biases, m/s2, in a factor that says nothing of them.

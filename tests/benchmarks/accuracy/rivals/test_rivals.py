@@ -171,6 +171,12 @@ def test_without_a_fix_there_is_no_place(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", RIVALS)
+def test_a_walk_of_nothing_has_no_poses(name: str) -> None:
+    walk = walked(1)
+    assert RIVALS[name]([], walk.origin, walk.rig, walk.ticks) == []
+
+
+@pytest.mark.parametrize("name", RIVALS)
 def test_what_is_not_a_number_is_left_out(name: str) -> None:
     walk = walked(1)
     broken: list[Measurement] = []
