@@ -1,8 +1,6 @@
 """The filter fed in the order of measuring: each measurement carries the state on to its stamp and corrects it there."""
 
-from collections.abc import Callable
 from math import hypot, pi, sqrt
-from typing import TypeAlias
 
 import numpy as np
 
@@ -28,8 +26,10 @@ from tracker.precise.compass import Compass
 from tracker.precise.error_model import start_covariance
 from tracker.precise.error_state import ErrorState
 from tracker.precise.eye import Eye
+from tracker.precise.ground import EyeHeight, standing_z_m
 from tracker.precise.hypotheses import Hypotheses
 from tracker.precise.landmarks import Landmarks
+from tracker.precise.memory import Memory, recall
 from tracker.precise.navigation import Biases, Navigation, mean, sample_between
 from tracker.precise.settings import PreciseSettings
 from tracker.precise.stride import Stride
@@ -41,9 +41,6 @@ _I3 = np.eye(3)
 _START_S = 0.5
 #: Pictures held for those to come.
 _HELD = 2
-
-EyeHeight: TypeAlias = Callable[[float, float], float]
-"""Height of the rig in site, m, above an east and a north, where it stands on the ground."""
 
 
 class Engine:
@@ -57,8 +54,10 @@ class Engine:
         compass: Compass,
         gravity_m_s2: float,
         eyes_z_m: EyeHeight | None = None,
+        memory: Memory | None = None,
     ) -> None:
         self._eyes_z_m = eyes_z_m
+        self._memory = memory
         self._settings = settings
         self._site = site
         self._eye = Eye(settings, rig)
@@ -157,7 +156,10 @@ class Engine:
         self._began_ns = sample.t_ns
         nav = Navigation(sample.t_ns, zero, zero, wxyz_level_from_gravity((x, y, z)))
         cov = start_covariance(settings, (1e3, 1e3, 1e3), 1.0, pi / sqrt(3.0))
-        self.hypotheses = Hypotheses(ErrorState(settings, nav, Biases(), cov, self._gravity))
+        state = ErrorState(settings, nav, Biases(), cov, self._gravity)
+        if self._memory is not None:
+            recall(state, self._memory)
+        self.hypotheses = Hypotheses(state)
 
     @property
     def best(self) -> ErrorState:
@@ -219,9 +221,10 @@ class Engine:
         var = variance_m2(fix, settings.gps_floor_m, settings.gps_sigma_m)
         ex, ey, ez = (sqrt(v * settings.gps_inflation) for v in var)
         sigma = (ex, ey, ez)
-        if self.fix_ns is None:
+        is_first = self.fix_ns is None
+        if is_first:
             for filter_ in hypotheses.filters:
-                filter_.place(p)
+                filter_.place(p, forget_receiver=False)
             self._find_heading()
         white = 1.0 - sum(settings.gps_error_share)
         noise = np.diag([max(white, 0.02) * s * s for s in sigma])
@@ -229,6 +232,8 @@ class Engine:
             lambda f: f.correct(*observations.gps_position(f, p, sigma, self._lever_gps_m), noise)
         )
         self.fix_ns = fix.t_ns
+        if is_first:
+            self._stand_on_ground()  # before anything is shown: a first height that is off by metres would be seen sliding
         self._judge_heading()
         if done is None or done.used:
             self._refused = 0
@@ -274,12 +279,12 @@ class Engine:
         assert self.hypotheses is not None
         if self._eyes_z_m is None or self.fix_ns is None:
             return
-        east, north, up = self.best.nav.p_m
-        eyes_z_m, sigma = self._eyes_z_m(east, north), self._settings.eye_height_sigma_m
-        off = abs(up - eyes_z_m) > 4.0 * sigma + 3.0 * sqrt(float(self.best.covariance[2, 2]))
-        if not off:
+        sigma, cov = self._settings.eye_height_sigma_m, self.best.covariance
+        within_m, off_m = sqrt(max(float(cov[0, 0]), float(cov[1, 1]))), 4.0 * sigma + 3.0 * sqrt(float(cov[2, 2]))
+        z_m = standing_z_m(self._eyes_z_m, self.best.nav.p_m, within_m, off_m)
+        if z_m is not None:
             noise = np.array([[self._settings.eye_height_repeats * sigma**2]])
-            self.hypotheses.correct(lambda f: f.correct(*observations.height(f, eyes_z_m), noise))
+            self.hypotheses.correct(lambda f: f.correct(*observations.height(f, z_m), noise))
 
     # -- heading ------------------------------------------------------------------------------------------------------
 

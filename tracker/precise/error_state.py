@@ -172,7 +172,9 @@ class ErrorState:
         return Correction(nis, _log_likelihood(min(nis, self.settings.reject_nis), S), used=True)
 
     def correct_far(self, observe: Callable[["ErrorState"], Observation], noise: Matrix) -> Correction:
-        """Take in a measurement that may move the state far: its Jacobian is taken again where it leads to.
+        """Take in a measurement that may move the state far, unless it is out of the question.
+
+        Its Jacobian is taken again where it leads to.
 
         Reference:
             Bell and Cathey, The iterated Kalman filter update as a Gauss-Newton method, 1993.
@@ -189,6 +191,8 @@ class ErrorState:
             error = K @ (residual + H @ error)
         first, _ = observe(prior)
         nis = float(first @ np.linalg.solve(S, first)) / len(first)
+        if nis > self.settings.reject_nis:
+            return Correction(nis, -0.5 * len(first) * self.settings.reject_nis, used=False)
         self.covariance = _joseph(cov, K, H, noise)
         self.move(error)
         return Correction(nis, _log_likelihood(nis, S), used=True)
@@ -238,17 +242,18 @@ class ErrorState:
 
     # -- whole-state changes ------------------------------------------------------------------------------------------
 
-    def place(self, p_site_m: Vector3) -> None:
+    def place(self, p_site_m: Vector3, *, forget_receiver: bool = True) -> None:
         """Begin anew at a position of which nothing is known yet; what is known of velocity and attitude stays."""
         self.settle()
         cov = self.covariance
         cov[P, :] = 0.0
         cov[:, P] = 0.0
         cov[P, P] = _UNKNOWN_M2 * np.eye(3)
-        cov[GPS_ERROR, :] = 0.0
-        cov[:, GPS_ERROR] = 0.0
-        cov[GPS_ERROR, GPS_ERROR] = np.diag(np.repeat(self.settings.gps_error_share, 3))
-        self.gps_error = np.zeros(9)
+        if forget_receiver:
+            cov[GPS_ERROR, :] = 0.0
+            cov[:, GPS_ERROR] = 0.0
+            cov[GPS_ERROR, GPS_ERROR] = np.diag(np.repeat(self.settings.gps_error_share, 3))
+            self.gps_error = np.zeros(9)
         self.nav = self.nav._replace(p_m=p_site_m)
         self.restart_chunk()
 

@@ -28,6 +28,7 @@ from tracker.precise.engine import Engine
 from tracker.precise.error_model import inertial_transition
 from tracker.precise.free import FreeIntegral
 from tracker.precise.ground import EyeHeight
+from tracker.precise.memory import Memory, remember
 from tracker.precise.navigation import Navigation
 from tracker.precise.refusal import refusal
 from tracker.precise.settings import PreciseSettings
@@ -58,20 +59,27 @@ class PreciseEstimator:
         uses_camera: bool,
         settings: PreciseSettings | None = None,
         eyes_z_m: EyeHeight | None = None,
+        memory: Memory | None = None,
     ) -> None:
-        """`eyes_z_m` is how high the rig is in site where it stands on the ground; None where no ground is known."""
+        """`eyes_z_m` is how high the rig is in site where it stands on the ground; None where no ground is known.
+
+        `memory` is what the same rig had learned of its sensors at its last start; None where nothing is known.
+        """
         self._name, self._uses_camera = name, uses_camera
         self._settings = settings or PreciseSettings()
         self._gravity = gravity_m_s2(origin.lat_deg, origin.h_ellipsoid_m)
         self._lag_ns = round(self._settings.lag_s * 1e9)
         self._site, self._rig, self._compass, self._eyes_z_m = SiteFrame(origin), rig, compass, eyes_z_m
+        self._memory = memory
         self._admission = Admission(self._site)
         self._begin()
 
     def _begin(self) -> None:
         self._timeline = Timeline()
         compass = deepcopy(self._compass)
-        self._engine = Engine(self._settings, self._site, self._rig, compass, self._gravity, self._eyes_z_m)
+        self._engine = Engine(
+            self._settings, self._site, self._rig, compass, self._gravity, self._eyes_z_m, self._memory
+        )
         self._blend = self._new_blend()
         self._free = FreeIntegral(self._gravity, self._lag_ns)
 
@@ -102,6 +110,7 @@ class PreciseEstimator:
         if newest_ns is not None and self._admission.refuses(measurement, newest_ns):
             return Outcome.REJECTED_GATE
         if isinstance(measurement, ImuSample) and newest_ns is not None and measurement.t_ns > newest_ns + LEAP_NS:
+            self._memory = self.memory() or self._memory
             self._begin()  # nobody knows what the rig has done in between
         if not self._timeline.add(measurement):
             return Outcome.REJECTED_STALE
@@ -176,15 +185,20 @@ class PreciseEstimator:
         """Return nothing: these are the paper's filter error, of measurements m_P and m_R that this filter does not make."""
         return []
 
+    def memory(self) -> Memory | None:
+        """Return what is worth keeping for the next start of the same rig; None before the first fix."""
+        engine = self._engine
+        return remember(deepcopy(engine.best)) if engine.fix_ns is not None else None
+
     # -- state --------------------------------------------------------------------------------------------------------
 
     def snapshot(self) -> Snapshot:
         """Return the whole state."""
-        return deepcopy((self._admission, self._timeline, self._engine, self._blend, self._free))
+        return deepcopy((self._admission, self._timeline, self._engine, self._blend, self._free, self._memory))
 
     def restore(self, snapshot: Snapshot) -> None:
         """Become what the snapshot was taken of."""
-        self._admission, self._timeline, self._engine, self._blend, self._free = deepcopy(snapshot)
+        self._admission, self._timeline, self._engine, self._blend, self._free, self._memory = deepcopy(snapshot)
 
 
 def _is_finite(nav: Navigation) -> bool:

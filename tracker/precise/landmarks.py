@@ -17,6 +17,10 @@ from tracker.precise.navigation import Navigation
 
 #: Sightings older than this are not taken again: the way since is not known well enough.
 REMEMBERED_S = 60.0
+#: Nearer than this, m, a direction is that of a step.
+NEAREST_M = 0.5
+#: Where the heading is known as well as this, rad, nobody points at what is behind them.
+FACING_RAD = 0.5
 #: One whose noise was raised by more than this factor was not worth what it could be.
 DISCOUNTED = 2.0
 
@@ -62,7 +66,13 @@ class Landmarks:
             point + now - then
             for point, now, then in zip(seen.sighting.point_site_m, self._walked_m, seen.walked_m, strict=True)
         )
-        distance_m = float(np.linalg.norm(np.array((x, y, z)) - filter_.nav.p_m))
+        to = np.array((x, y, z)) - filter_.nav.p_m
+        distance_m = float(np.linalg.norm(to))
+        behind = float(to @ np.array(rotate(filter_.nav.wxyz_site_body, ray))) < 0.0
+        if distance_m < NEAREST_M or (behind and float(filter_.covariance[8, 8]) < FACING_RAD**2):
+            # a slip of the finger, or of the name
+            reject_nis = filter_.settings.reject_nis
+            return Correction(reject_nis, -reject_nis, used=False)
         bend_rad = float(np.trace(filter_.covariance[P, P])) / (2.0 * distance_m**2)
         sigma_rad = seen.sighting.sigma_rad
         seen.discount = float(np.hypot(sigma_rad, bend_rad)) / sigma_rad

@@ -1,5 +1,6 @@
 """Landmarks: one alone says little where the place is open; looked at again from elsewhere, it says the same."""
 
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -78,3 +79,23 @@ def test_what_was_seen_a_minute_ago_is_forgotten() -> None:
     first.discount = 9.0
     later = HERE._replace(t_ns=61 * S)
     assert first not in landmarks.see(*_sighting(later, (12.0, 4.0, 3.0)))
+
+
+@pytest.mark.parametrize("point", [(-9.0, -6.0, 4.0), (1.1, 2.0, 1.6), (12.0, 14.0, 3.0)])
+def test_a_slip_of_the_finger_moves_nothing(point: Vector3) -> None:
+    """The direction is that of another landmark: this one is behind, or where the rig is, or far aside."""
+    landmarks, state = Landmarks(LEVER), _state(HERE, 0.3)
+    state.covariance[8, 8] = 0.02**2
+    seen, ray = _sighting(HERE, (12.0, 4.0, 3.0))
+    (wrong,) = landmarks.see(replace(seen, point_site_m=point), ray)
+    done = landmarks.correct(state, wrong)
+    assert not done.used
+    assert state.nav.p_m == HERE.p_m
+
+
+def test_who_does_not_know_north_believes_what_is_pointed_out_behind() -> None:
+    landmarks = Landmarks(LEVER)
+    state = _state(HERE._replace(wxyz_site_body=wxyz_from_yaw(0.3 + 2.0)), 0.3)
+    state.covariance[8, 8] = 2.0**2
+    (seen,) = landmarks.see(*_sighting(HERE, (12.0, 4.0, 3.0)))
+    assert landmarks.correct(state, seen).used
