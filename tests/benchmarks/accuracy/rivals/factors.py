@@ -14,8 +14,8 @@ from tracker.measurements import Matrix, Vector3
 from tracker.precise.error_model import skew
 from tracker.precise.settings import PreciseSettings
 
-#: Residuals beyond so many sigmas count for less.
-HUBER, CAUCHY = 1.345, 3.0
+#: Residuals beyond so many sigmas count for less: of standing, of fixes (reflected signals beside walls) and of velocities (spikes).
+STANDING, FIX, VELOCITY = 1.345, 2.0, 3.0
 
 ErrorFunction: TypeAlias = Callable[[gtsam.CustomFactor, gtsam.Values, gtsam.JacobianVector | None], Matrix]
 
@@ -23,14 +23,14 @@ ErrorFunction: TypeAlias = Callable[[gtsam.CustomFactor, gtsam.Values, gtsam.Jac
 def huber(sigmas: Matrix) -> gtsam.noiseModel.Base:
     """Return (n,) independent sigmas whose outliers pull with a constant force."""
     return gtsam.noiseModel.Robust.Create(
-        gtsam.noiseModel.mEstimator.Huber.Create(HUBER), gtsam.noiseModel.Diagonal.Sigmas(sigmas)
+        gtsam.noiseModel.mEstimator.Huber.Create(STANDING), gtsam.noiseModel.Diagonal.Sigmas(sigmas)
     )
 
 
-def cauchy(sigmas: Matrix) -> gtsam.noiseModel.Base:
-    """Return (n,) independent sigmas whose outliers pull less and less."""
+def cauchy(sigmas: Matrix, beyond: float) -> gtsam.noiseModel.Base:
+    """Return (n,) independent sigmas whose outliers, beyond so many of them, pull less and less."""
     return gtsam.noiseModel.Robust.Create(
-        gtsam.noiseModel.mEstimator.Cauchy.Create(CAUCHY), gtsam.noiseModel.Diagonal.Sigmas(sigmas)
+        gtsam.noiseModel.mEstimator.Cauchy.Create(beyond), gtsam.noiseModel.Diagonal.Sigmas(sigmas)
     )
 
 
@@ -61,7 +61,7 @@ def gps_position(
             T_site_body.translation() + R @ lever_body_m + by_error @ values.atVector(error) - measured, float
         )
 
-    return gtsam.CustomFactor(cauchy(np.sqrt(white) * sigma), [pose, error], residual)
+    return gtsam.CustomFactor(cauchy(np.sqrt(white) * sigma, FIX), [pose, error], residual)
 
 
 def gps_velocity(
@@ -77,7 +77,7 @@ def gps_velocity(
             jacobians[1] = np.eye(3)
         return np.asarray(values.atVector(velocity) + R @ turning_body_m_s - measured, float)
 
-    return gtsam.CustomFactor(cauchy(sigma_m_s), [pose, velocity], residual)
+    return gtsam.CustomFactor(cauchy(sigma_m_s, VELOCITY), [pose, velocity], residual)
 
 
 def error_start(error: int, settings: PreciseSettings) -> gtsam.NonlinearFactor:
