@@ -14,7 +14,7 @@ from tracker.measurements import Matrix, Vector3
 from tracker.precise.error_model import skew
 from tracker.precise.settings import PreciseSettings
 
-#: Residuals beyond so many sigmas count for less: of standing, of fixes (reflected signals beside walls) and of velocities (spikes).
+#: Residuals beyond so many sigmas count for less: of standing, of fixes (reflections beside walls) and of velocities (spikes).
 STANDING, FIX, VELOCITY = 1.345, 2.0, 3.0
 
 ErrorFunction: TypeAlias = Callable[[gtsam.CustomFactor, gtsam.Values, gtsam.JacobianVector | None], Matrix]
