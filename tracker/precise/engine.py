@@ -13,13 +13,11 @@ from tracker.measurements import (
     GpsVelocity,
     ImuSample,
     MagSample,
-    Matrix,
     Sighting,
     Standpoint,
     Vector3,
     VisualMotion,
 )
-from tracker.pace import Pace
 from tracker.precise import observations
 from tracker.precise.activity import Activity
 from tracker.precise.compass import Compass
@@ -67,7 +65,6 @@ class Engine:
         self._gravity = gravity_m_s2
         self._compass = compass
         self._activity = Activity()
-        self._pace = Pace()
         self._stride = Stride()
         self._start: list[ImuSample] = []
         self._last: ImuSample | None = None
@@ -138,7 +135,7 @@ class Engine:
             filter_.advance(sample.t_ns, gyro, accel)
         self._landmarks.moved(before, self.best.nav)
         if counted:
-            self._pace.step(accel, self.best.nav.wxyz_site_body, (sample.t_ns - last.t_ns) * 1e-9)
+            self._stride.step(accel, self.best.nav.wxyz_site_body, (sample.t_ns - last.t_ns) * 1e-9)
             if self._activity.step(sample):
                 self._cycle(sample.t_ns)
 
@@ -184,29 +181,11 @@ class Engine:
                 noise = settings.still_rate_sigma_rad_s**2 * _I3
                 hypotheses.correct(lambda f: f.correct(*observations.turn_rate(f, activity.gyro_mean_rad_s), noise))
         elif self._is_blind(t_ns):
-            expected, noise = self._walk_on()
+            expected, noise = self._stride.onward(activity.force_spread_m_s2, settings)
             hypotheses.correct(lambda f: f.correct(*observations.velocity(f, expected), noise, gated=False))
         else:
-            v_m_s = self.best.nav.v_m_s
-            self._pace.learn(v_m_s, (1.0, 0.0))
-            self._stride.learn(activity.force_spread_m_s2, hypot(v_m_s[0], v_m_s[1]))
+            self._stride.learn(activity.force_spread_m_s2, self.best.nav.v_m_s)
         self._stand_on_ground()
-
-    def _walk_on(self) -> tuple[Vector3, Matrix]:
-        """Return the velocity of one who goes on as before, and its covariance."""
-        shaken = self._activity.force_spread_m_s2
-        x, y, _ = self._pace.velocity_m_s((1.0, 0.0)) if self.fix_ns is not None else (0.0, 0.0, 0.0)
-        length = hypot(x, y)
-        if length == 0.0:
-            # one who holds the rig in the hands moves it, the more the harder, and it stays about where it is
-            return (0.0, 0.0, 0.0), min(0.3 + 0.1 * shaken, 1.6) ** 2 * _I3
-        settings, speed = self._settings, self._stride.speed_m_s(shaken)
-        ahead = np.array([x / length, y / length, 0.0])
-        noise = settings.stride_sigma_m_s**2 * _I3
-        # people look aside: the facing tells the speed better than the way
-        noise += settings.facing_sigma_m_s**2 * np.diag([1.0, 1.0, 0.0])
-        noise -= settings.facing_sigma_m_s**2 * np.outer(ahead, ahead)
-        return (speed * x / length, speed * y / length, 0.0), noise
 
     def _is_blind(self, t_ns: int) -> bool:
         """Whether the receiver has been silent for longer than its usual second."""

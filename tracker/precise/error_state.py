@@ -116,7 +116,7 @@ class ErrorState:
         cov[:, FORGETTING] *= keep
         cov[_DIAGONAL] += self._noise.added(dt)
         turned = log_rotation(multiply(end.wxyz_site_body, conjugate(start.wxyz_site_body)))
-        self._scale_turn(cov, R_mean[:, 2], turned, gained, dt)
+        self._scale_turn(R_mean[:, 2], turned, gained, dt)
         index = np.arange(3)
         cov[6 + index, 6 + index] += (self.settings.gyro_scale * hypot(*turned)) ** 2
         shaken = np.array(end.v_m_s) - np.array(start.v_m_s)
@@ -128,10 +128,10 @@ class ErrorState:
         self.magnetic_rad *= float(keep[9])
         self._chunk_nav, self._chunk_R = end, R_end
 
-    @staticmethod
-    def _scale_turn(cov: Matrix, up: Matrix, turned_rad: Vector3, gained_m_s: Matrix, dt_s: float) -> None:
+    def _scale_turn(self, up: Matrix, turned_rad: Vector3, gained_m_s: Matrix, dt_s: float) -> None:
         """Add to the motion what the scale of turns is unsure of; `up` is the body's z in site, (3,)."""
-        turn = -float(up @ turned_rad) * up
+        cov = self.covariance
+        turn = -float(up @ turned_rad) / (1.0 - self.biases.turn_scale) * up
         bent = np.cross(gained_m_s, turn)
         by_scale = np.concatenate([-dt_s / 6.0 * bent, -0.5 * bent, turn])
         cov[_MOTION, :] += np.outer(by_scale, cov[TURN_SCALE, :])

@@ -21,9 +21,9 @@ class PreciseSettings:
     """Error of scale and axes, as a share of each turn: what a fast head turn adds to the doubt of attitude."""
     accel_scale: float = 0.005
     """Error of scale and axes, as a share of each change of velocity, gravity's included."""
-    turn_scale: float = 0.01
+    turn_scale: float = 0.005
     """Standard deviation of the scale of turns about the body's z, before anything was measured."""
-    gyro_bias_walk_rad_s2_sqrt_hz: float = 3e-5
+    gyro_bias_walk_rad_s2_sqrt_hz: float = 5e-5
     """How fast the bias wanders."""
     accel_bias_walk_m_s3_sqrt_hz: float = 5e-4
     """How fast the bias wanders."""

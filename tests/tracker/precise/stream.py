@@ -6,10 +6,12 @@ from functools import cache
 import numpy as np
 
 from tracker.estimator import Pose
-from tracker.estimators import build
 from tracker.geometry import exp, matrix_from_wxyz
 from tracker.measurements import Measurement, Sighting, Standpoint, TruePose, VisualMotion
+from tracker.precise.compass import Compass
 from tracker.precise.estimator import PreciseEstimator
+from tracker.precise.ground import EyeHeight
+from tracker.precise.memory import Memory
 from tracker.simulate import AGORA_ORIGIN, START_NS, Walk, WalkSettings, default_rig, simulate
 
 S = 1_000_000_000
@@ -17,11 +19,19 @@ NAMES = ("gps-imu/precise", "camera-gps-imu/precise")
 _CAMERA_HZ, _KEY_EVERY = 8.0, 3
 
 
-def estimator(name: str = NAMES[1]) -> PreciseEstimator:
+def estimator(
+    name: str = NAMES[1], *, eyes_z_m: EyeHeight | None = None, memory: Memory | None = None
+) -> PreciseEstimator:
     """Return a new one."""
-    built = build(name, origin=AGORA_ORIGIN, rig=default_rig(), declination_rad=0.0957)
-    assert isinstance(built, PreciseEstimator)
-    return built
+    return PreciseEstimator(
+        name,
+        origin=AGORA_ORIGIN,
+        rig=default_rig(),
+        compass=Compass(0.0957),
+        uses_camera=name.startswith("camera"),
+        eyes_z_m=eyes_z_m,
+        memory=memory,
+    )
 
 
 @cache

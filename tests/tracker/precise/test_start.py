@@ -1,21 +1,20 @@
 """How the filter starts: on the ground from its first pose on, and with what the rig learned of its sensors before."""
 
 from dataclasses import replace
+from functools import partial
 from math import hypot
 
 import numpy as np
 import pytest
 
+from tests.tracker.precise.stream import NAMES, S, estimator
 from tracker.measurements import ImuSample, Measurement, Standpoint, TruePose
-from tracker.precise.compass import Compass
 from tracker.precise.estimator import PreciseEstimator
-from tracker.precise.ground import EyeHeight
-from tracker.precise.memory import Memory
-from tracker.simulate import AGORA_ORIGIN, START_NS, Walk, WalkSettings, default_rig, simulate
+from tracker.simulate import START_NS, Walk, WalkSettings, default_rig, simulate
 
-S = 1_000_000_000
 ALIGNED_NS, STOPPED_NS, AGAIN_NS = START_NS + 38 * S, START_NS + 40 * S, START_NS + 50 * S
 SEED = 104
+begun = partial(estimator, NAMES[0])
 
 
 @pytest.fixture(scope="module")
@@ -40,18 +39,6 @@ def learned(walk: Walk, measurements: list[Measurement]) -> PreciseEstimator:
         if isinstance(measurement, ImuSample) and measurement.t_ns == ALIGNED_NS:
             estimator.step(Standpoint(ALIGNED_NS, measurement.t_recv_ns, place(walk, ALIGNED_NS), 0.1))
     return estimator
-
-
-def begun(memory: Memory | None = None, eyes_z_m: EyeHeight | None = None) -> PreciseEstimator:
-    return PreciseEstimator(
-        "gps-imu/precise",
-        origin=AGORA_ORIGIN,
-        rig=default_rig(),
-        compass=Compass(0.0957),
-        uses_camera=False,
-        eyes_z_m=eyes_z_m,
-        memory=memory,
-    )
 
 
 def place(walk: Walk, t_ns: int) -> tuple[float, float, float]:
@@ -87,7 +74,7 @@ def test_a_known_place_still_helps_after_the_next_start(
 ) -> None:
     memory = learned.memory()
     assert memory is not None
-    assert off_m(begun(memory), walk, measurements) < 0.6 * off_m(begun(), walk, measurements)
+    assert off_m(begun(memory=memory), walk, measurements) < 0.6 * off_m(begun(), walk, measurements)
 
 
 def test_before_a_first_fix_there_is_nothing_to_remember() -> None:

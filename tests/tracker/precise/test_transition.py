@@ -40,11 +40,11 @@ def _state(rng: Generator) -> ErrorState:
     """A state with two held pictures, all of it anywhere; its covariance is any."""
     w, x, y, z = rng.normal(size=4).tolist()
     nav = Navigation(0, _vector(rng, 5.0), _vector(rng, 1.0), normalise((w, x, y, z)))
-    state = ErrorState(SETTINGS, nav, Biases(_vector(rng, 0.01), _vector(rng, 0.1), 0.001), np.eye(SIZE), 9.8)
+    state = ErrorState(SETTINGS, nav, Biases(_vector(rng, 0.01), _vector(rng, 0.1)), np.eye(SIZE), 9.8)
     for _ in range(2):
         state.hold(2)
         state.move(0.3 * rng.normal(size=len(state.covariance)))
-    state.biases = replace(state.biases, turn_scale=0.002)
+    state.biases = replace(state.biases, turn_scale=0.01)
     root = rng.normal(size=state.covariance.shape)
     state.covariance = root @ root.T
     return state
