@@ -15,7 +15,7 @@ from typing import BinaryIO
 
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import Channel, Chunk, Message, Schema
+from mcap.records import Channel, Chunk, Message, Metadata, Schema
 from mcap.stream_reader import StreamReader, breakup_chunk
 
 from tracker.errors import MalformedInput
@@ -61,6 +61,8 @@ class Container:
         self.truncated = False
         self.damage: Counter[str] = Counter()
         """Chunks that did not read."""
+        self.metadata: dict[str, dict[str, str]] = {}
+        """What the recorder says of the whole, by name."""
         self._spans: list[_Span] = []
         self._channels: dict[int, tuple[str, str]] = {}
         self._schemas: dict[int, str] = {}
@@ -155,8 +157,10 @@ class Container:
         return [stored for record in breakup_chunk(chunk, validate_crc=True) for stored in self._learn(record)]
 
     def _learn(self, record: object) -> list[Stored]:
-        """Remember schemas and channels; return the message in a record."""
-        if isinstance(record, Schema):
+        """Remember schemas, channels and metadata; return the message in a record."""
+        if isinstance(record, Metadata):
+            self.metadata[record.name] = record.metadata
+        elif isinstance(record, Schema):
             self._schemas[record.id] = record.name
         elif isinstance(record, Channel):
             ros_type = self._schemas.get(record.schema_id, "")

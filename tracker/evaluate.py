@@ -10,18 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracker import score
+from tracker.assembly import assemble
 from tracker.errors import MissingSensor
 from tracker.estimator import NO_MOTION_MODEL, Estimator, Innovation, Origin, Pose
-from tracker.estimators import Settings, build, missing_sensors
+from tracker.estimators import Settings, missing_sensors
 from tracker.geodesy import SiteFrame
-from tracker.geomagnetism import magnetic_field
 from tracker.log import Log
-from tracker.measurements import Frame, GpsFix, ImuSample, Matrix, Measurement, Outcome, TruePose
+from tracker.measurements import Frame, GpsFix, ImuSample, Matrix, Measurement, Outcome, TruePose, VisualMotion
 from tracker.paper import PaperEstimator
 from tracker.pipeline import Pipeline
 from tracker.precise.ground import EyeHeight
 from tracker.score import Figures
-from tracker.vision import VisionFrontEnd
 
 _PERIOD_NS = round(1e9 / score.RATE_HZ)
 
@@ -61,7 +60,13 @@ def log_origin(log: Log) -> Origin:
 
 
 def make_pipeline(
-    name: str, log: Log, origin: Origin, settings: Settings | None = None, eyes_z_m: EyeHeight | None = None
+    name: str,
+    log: Log,
+    origin: Origin,
+    settings: Settings | None = None,
+    eyes_z_m: EyeHeight | None = None,
+    *,
+    look_again: bool = False,
 ) -> Pipeline:
     """Return a new pipeline for a log.
 
@@ -71,6 +76,7 @@ def make_pipeline(
         origin: Where the site frame is laid.
         settings: None for the defaults.
         eyes_z_m: Height of the rig in that frame where it stands on the ground; None where no ground is known.
+        look_again: Where the log holds what the live front end had made of its pictures: look at them anew nevertheless.
 
     Raises:
         UnknownEstimator: No estimator has that name.
@@ -79,19 +85,16 @@ def make_pipeline(
     missing = missing_sensors(name, log.info, log.rig)
     if missing:
         raise MissingSensor(f"{log.name} cannot run {name}: it has {missing}.")
-    earth = magnetic_field(origin.lat_deg, origin.lon_deg, origin.h_ellipsoid_m, log.info.t_start_ns)
-    estimator = build(
+    return assemble(
         name,
         origin=origin,
         rig=log.rig,
-        declination_rad=earth.declination_rad if log.info.counts["mag"] else 0.0,
-        earth_field=earth,
+        date_ns=log.info.date_ns,
         truth_origin=log.info.truth_origin,
         settings=settings,
         eyes_z_m=eyes_z_m,
+        looks=look_again or not log.info.counts["motions"],
     )
-    camera = log.rig.camera
-    return Pipeline(estimator, VisionFrontEnd(camera) if camera and estimator.uses_camera else None)
 
 
 def run(
@@ -101,6 +104,8 @@ def run(
     progress: Callable[[float], None] = lambda done: None,
     origin: Origin | None = None,
     eyes_z_m: EyeHeight | None = None,
+    *,
+    look_again: bool = False,
 ) -> Run:
     """Run a log through an estimator.
 
@@ -110,13 +115,13 @@ def run(
         settings: None for the defaults.
         progress: Called now and then with the share of the log that is done.
         origin: Where the site frame is laid; None for the log's own (`log_origin`).
-        eyes_z_m: See `make_pipeline`.
+        eyes_z_m, look_again: See `make_pipeline`.
 
     Raises:
         UnknownEstimator, MissingSensor: See `make_pipeline`.
     """
     origin = origin or log_origin(log)
-    pipeline = make_pipeline(name, log, origin, settings, eyes_z_m)
+    pipeline = make_pipeline(name, log, origin, settings, eyes_z_m, look_again=look_again)
     info = log.info
     result = Run(log.name, name, info.t_start_ns, info.duration_s, origin, info.truth_origin)
     follow(pipeline, log.messages(camera=pipeline.estimator.uses_camera), result, progress)
@@ -183,6 +188,8 @@ def feed(pipeline: Pipeline, measurement: Measurement, result: Run) -> None:
             result.counts["gps"] += 1
             if measurement.valid:
                 result.fixes.append(measurement)
+        case VisualMotion():
+            result.vision_estimates += outcome in (Outcome.USED, Outcome.WAITING)
         case Frame():
             result.counts["frames"] += 1
             if outcome is not Outcome.IGNORED:

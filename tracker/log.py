@@ -17,19 +17,10 @@ from tracker import ros_messages as ros
 from tracker.container import Container, Stored
 from tracker.errors import MalformedInput
 from tracker.estimator import Origin
-from tracker.measurements import (
-    CompassHeading,
-    Frame,
-    GpsFix,
-    GpsVelocity,
-    ImuSample,
-    MagSample,
-    Matrix,
-    Measurement,
-    TruePose,
-)
+from tracker.measurements import Frame, GpsFix, Matrix, Measurement
 from tracker.pictures import EncodedPicture
 from tracker.rig import CameraModel, Rig
+from tracker.soundness import Soundness
 from tracker.video import VideoDecoder, is_key
 
 #: Topic of each sensor, the type that it must have, and the name under which it is counted.
@@ -41,14 +32,15 @@ TOPICS: dict[str, tuple[str, str]] = {
     "/gps/vel": (ros.VELOCITY, "gps_velocity"),
     "/camera/image/compressed": (ros.IMAGE, "frames"),
     "/camera/video": (ros.VIDEO, "frames"),
+    "/camera/motion": (ros.MOTION, "motions"),
     "/ground_truth/odom": (ros.ODOMETRY, "truth"),
     "/camera/camera_info": (ros.CAMERA_INFO, ""),
     "/tf_static": (ros.TF, ""),
     "/ground_truth/origin": (ros.FIX, ""),
 }
+#: Name of the metadata that our recorder writes.
+RECORDING = "agora"
 _CAMERA = ("/camera/image/compressed", "/camera/video")
-#: A stamp may lie this much later than its message's arrival: two clocks, not a jump.
-_CLOCK_TOLERANCE_NS = 1_000_000_000
 
 
 @dataclass(frozen=True)
@@ -59,11 +51,18 @@ class LogInfo:
     """Arrival of the first message."""
     t_end_ns: int
     counts: dict[str, int]
-    """Messages by sensor: imu, mag, compass, gps, gps_velocity, frames, truth."""
+    """Messages by sensor: imu, mag, compass, gps, gps_velocity, frames, truth; and motions, what a front end made of frames."""
     first_fix: GpsFix | None
     truth_origin: Origin | None
     camera_encoding: Literal["jpeg", "png", "h264"] | None
     truncated: bool
+    utc_start_ns: int | None = None
+    """Nanoseconds since 1970 at the start, where a recorder says so; None where the stamps themselves are meant so."""
+
+    @property
+    def date_ns(self) -> int:
+        """When the walk was, nanoseconds since 1970."""
+        return self.t_start_ns if self.utc_start_ns is None else self.utc_start_ns
 
     @property
     def duration_s(self) -> float:
@@ -84,7 +83,8 @@ class Log:
         self._contents = contents
         self.path = container.path
         self.name = container.path.stem
-        self.info = contents.info(container.truncated)
+        self.metadata = container.metadata
+        self.info = contents.info(container.truncated, _utc_start_ns(container.metadata))
         self.rig = contents.rig()
         self.skipped: Counter[str] = Counter()
         """What the last reading left out, by reason."""
@@ -176,13 +176,13 @@ class _Contents:
             if fix.valid and isfinite(fix.lat_deg + fix.lon_deg + fix.h_ellipsoid_m):
                 self._first_fix = fix
 
-    def info(self, truncated: bool) -> LogInfo:
+    def info(self, truncated: bool, utc_start_ns: int | None) -> LogInfo:
         """Return what was found."""
         first, last = self._times_ns or (0, 0)
         origin = self._truth_origin if self.counts["truth"] else None
         self.camera_times_ns.sort()
         self.key_times_ns.sort()
-        return LogInfo(first, last, self.counts, self._first_fix, origin, self._encoding, truncated)
+        return LogInfo(first, last, self.counts, self._first_fix, origin, self._encoding, truncated, utc_start_ns)
 
     def rig(self) -> Rig:
         """Return the extrinsics of `/tf_static`, and the camera."""
@@ -211,8 +211,7 @@ class _Reading:
         }
         R_body_imu = log.rig.T_body_imu[:3, :3]
         self._R_body_imu = None if np.array_equal(R_body_imu, np.eye(3)) else R_body_imu
-        self._last_ns: dict[str, int] = {}
-        self._lateness_ns: dict[str, int] = {}
+        self._soundness = Soundness()
         self._decoder = VideoDecoder()
         self._waiting: dict[int, tuple[int, int]] = {}
 
@@ -230,7 +229,7 @@ class _Reading:
             if stored.t_recv_ns < self._start_ns and stored.topic != "/camera/video":
                 continue
             for measurement in self._parse(stored, frame_id - 1):
-                if measurement.t_recv_ns >= self._start_ns and self._is_sound(stored.topic, measurement):
+                if measurement.t_recv_ns >= self._start_ns and self._is_sound(measurement):
                     yield measurement
 
     def _is_wanted(self, topic: str) -> bool:
@@ -259,6 +258,8 @@ class _Reading:
                 yield ros.gps_fix(message, t_ns)
             case "/gps/vel":
                 yield ros.gps_velocity(message, t_ns)
+            case "/camera/motion":
+                yield ros.visual_motion(message, t_ns)
             case "/ground_truth/odom":
                 yield ros.true_pose(message, t_ns)
             case "/camera/image/compressed":
@@ -284,42 +285,14 @@ class _Reading:
             del self._waiting[number]
             self._skipped["corrupt_image"] += 1
 
-    def _is_sound(self, topic: str, measurement: Measurement) -> bool:
-        """Return whether stamps rise and numbers are numbers; count what is left out."""
-        reason = self._fault(topic, measurement)
-        if reason is not None:
-            self._skipped[reason] += 1
-            return False
-        self._last_ns[topic] = measurement.t_ns
-        return True
-
-    def _fault(self, topic: str, measurement: Measurement) -> str | None:
-        if not _is_finite(measurement):
-            return "not_finite"
-        late_ns = measurement.t_ns - measurement.t_recv_ns
-        usual_ns = self._lateness_ns.setdefault(topic, max(0, late_ns))
-        if late_ns > usual_ns + _CLOCK_TOLERANCE_NS:
-            return "stamp_after_arrival"
-        last_ns = self._last_ns.get(topic)
-        if last_ns is not None and measurement.t_ns <= last_ns:
-            return "duplicate_stamp" if measurement.t_ns == last_ns else "stamp_went_back"
-        return None
+    def _is_sound(self, measurement: Measurement) -> bool:
+        """Return whether a measurement may go on; count it by reason where not."""
+        fault = self._soundness.fault(measurement)
+        if fault is not None:
+            self._skipped[fault] += 1
+        return fault is None
 
 
-def _is_finite(measurement: Measurement) -> bool:
-    match measurement:
-        case ImuSample():
-            return all(map(isfinite, (*measurement.gyro_rad_s, *measurement.accel_m_s2)))
-        case MagSample():
-            return all(map(isfinite, measurement.field_body_t))
-        case GpsVelocity():
-            return all(map(isfinite, measurement.v_enu_m_s))
-        case CompassHeading():
-            return isfinite(measurement.yaw_rad)
-        case GpsFix():
-            place = (measurement.lat_deg, measurement.lon_deg, measurement.h_ellipsoid_m)
-            return not measurement.valid or all(map(isfinite, place))
-        case TruePose():
-            return all(map(isfinite, (*measurement.p_map_body_m, *measurement.wxyz_map_body)))
-        case _:
-            return True
+def _utc_start_ns(metadata: dict[str, dict[str, str]]) -> int | None:
+    text = metadata.get(RECORDING, {}).get("utc_start_ns", "")
+    return int(text) if text.isascii() and text.isdigit() and len(text) < 20 else None

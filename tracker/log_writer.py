@@ -1,5 +1,7 @@
-"""Measurements into a log: a ROS 2 bag in one MCAP file, as LOG_FORMAT.md says."""
+"""Measurements into a log: a ROS 2 bag in one MCAP file, as LOG_FORMAT.md says; docs/recording.md says what is beside it."""
 
+import os
+from collections.abc import Mapping
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Literal
@@ -22,6 +24,7 @@ from tracker.measurements import (
     Picture,
     TruePose,
     Vector3,
+    VisualMotion,
 )
 from tracker.rig import Rig
 from tracker.video import VideoEncoder
@@ -43,6 +46,7 @@ class LogWriter:
         t_start_ns: int = 0,
         video: Literal["jpeg", "h264"] = "jpeg",
         rate_hz: float = 15.0,
+        metadata: Mapping[str, Mapping[str, str]] | None = None,
     ) -> None:
         """Begin a log.
 
@@ -53,11 +57,16 @@ class LogWriter:
             t_start_ns: Arrival of the messages that come once; not after the first measurement.
             video: How pictures are stored; `h264` wants pictures with `bgr()`.
             rate_hz: Of the camera, for the encoder's rate control.
+            metadata: Names and values that go to the file's head, by name of the record.
         """
         self._rig, self._video, self._rate_hz = rig, video, rate_hz
+        R_imu_body = rig.T_body_imu[:3, :3].T
+        self._R_imu_body = None if np.array_equal(R_imu_body, np.eye(3)) else R_imu_body
         self._file = path.open("wb")
         self._writer: Any = Writer(self._file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD)
         self._writer.start(profile="ros2", library="agora")
+        for name, values in (metadata or {}).items():
+            self._writer.add_metadata(name, dict(values))
         self._channels: dict[str, int] = {}
         self._schemas: dict[str, int] = {}
         self._encoder: VideoEncoder | None = None
@@ -71,10 +80,27 @@ class LogWriter:
     ) -> None:
         self.close()
 
+    def flush(self) -> None:
+        """Bring all that was written so far to the disk: neither a kill nor a power cut loses it.
+
+        Raises:
+            OSError: The disk is full, or gone.
+        """
+        self._writer._Writer__finalize_chunk()  # mcap has no public way to end a chunk before it is full
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
     def close(self) -> None:
-        """Write the index and close the file."""
-        if not self._file.closed:
+        """Write the index and close the file.
+
+        Raises:
+            OSError: The disk is full, or gone; the file is closed nevertheless.
+        """
+        if self._file.closed:
+            return
+        try:
             self._writer.finish()
+        finally:
             self._file.close()
 
     def _once(self, origin: Origin | None, t_ns: int) -> None:
@@ -116,6 +142,8 @@ class LogWriter:
                 self._put("/ground_truth/odom", _odometry(measurement), t_ns)
             case Frame():
                 self._frame(measurement)
+            case VisualMotion():
+                self._put("/camera/motion", _motion(measurement), t_ns)
             case _:
                 raise ValueError(f"logs do not hold {type(measurement).__name__}")
 
@@ -129,7 +157,9 @@ class LogWriter:
         self._writer.add_message(self._channels[topic], t_recv_ns, ros.encode(message), t_recv_ns)
 
     def _in_imu(self, v_body: Vector3) -> ros.RosMessage:
-        x, y, z = self._rig.T_body_imu[:3, :3].T @ v_body
+        if self._R_imu_body is None:
+            return ros.vector(v_body)
+        x, y, z = self._R_imu_body @ v_body
         return ros.vector((float(x), float(y), float(z)))
 
     def _imu(self, sample: ImuSample) -> ros.RosMessage:
@@ -227,6 +257,20 @@ def _velocity(velocity: GpsVelocity) -> ros.RosMessage:
         "geometry_msgs/msg/Twist", linear=ros.vector(velocity.v_enu_m_s), angular=ros.vector((0.0, 0.0, 0.0))
     )
     return ros.message(ros.VELOCITY, header=ros.header(velocity.t_ns, "gps_link"), twist=twist)
+
+
+def _motion(motion: VisualMotion) -> ros.RosMessage:
+    return ros.message(
+        ros.MOTION,
+        header=ros.header(motion.t_ns, "camera_optical_frame"),
+        key_stamp=ros.time(motion.t_key_ns),
+        frame_id=motion.frame_id,
+        r_key_cam=np.asarray(motion.R_key_cam, np.float64).ravel(),
+        direction_key=ros.vector(motion.direction_key),
+        inliers=motion.inliers,
+        parallax_px=motion.parallax_px,
+        is_keyframe=motion.is_keyframe,
+    )
 
 
 def _odometry(truth: TruePose) -> ros.RosMessage:

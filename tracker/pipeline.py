@@ -38,6 +38,8 @@ class Pipeline:
             if self.front_end is None:
                 return Outcome.IGNORED
             return self.step_vision(self.front_end.step(measurement))
+        if isinstance(measurement, VisualMotion) and self.front_end is not None:
+            return Outcome.IGNORED  # what a live front end had made of a picture that this one looks at itself
         return self._feed(measurement)
 
     def step_vision(self, motion: VisualMotion | None) -> Outcome:

@@ -20,6 +20,7 @@ from tracker.measurements import (
     Matrix,
     TruePose,
     Vector3,
+    VisualMotion,
     Wxyz,
 )
 from tracker.rig import CameraModel, DistortionModel
@@ -30,12 +31,25 @@ RosMessage: TypeAlias = Any
 IMU, MAG, COMPASS = "sensor_msgs/msg/Imu", "sensor_msgs/msg/MagneticField", "geometry_msgs/msg/QuaternionStamped"
 FIX, VELOCITY, ODOMETRY = "sensor_msgs/msg/NavSatFix", "geometry_msgs/msg/TwistStamped", "nav_msgs/msg/Odometry"
 IMAGE, VIDEO = "sensor_msgs/msg/CompressedImage", "foxglove_msgs/msg/CompressedVideo"
+MOTION = "agora_msgs/msg/VisualMotion"
 CAMERA_INFO, TF = "sensor_msgs/msg/CameraInfo", "tf2_msgs/msg/TFMessage"
 
 _VIDEO_DEFINITION = "builtin_interfaces/Time timestamp\nstring frame_id\nuint8[] data\nstring format\n"
 
+#: Ours, since ROS has none: what the camera's front end made of a picture. `header.stamp` is the picture's.
+_MOTION_DEFINITION = """std_msgs/Header header
+builtin_interfaces/Time key_stamp
+uint32 frame_id
+float64[9] r_key_cam
+geometry_msgs/Vector3 direction_key
+uint32 inliers
+float64 parallax_px
+bool is_keyframe
+"""
+
 TYPES = get_typestore(Stores.ROS2_HUMBLE)
 TYPES.register(get_types_from_msg(_VIDEO_DEFINITION, VIDEO))
+TYPES.register(get_types_from_msg(_MOTION_DEFINITION, MOTION))
 
 NS = 1_000_000_000
 
@@ -138,6 +152,21 @@ def gps_fix(m: RosMessage, t_recv_ns: int) -> GpsFix:
 def gps_velocity(m: RosMessage, t_recv_ns: int) -> GpsVelocity:
     """Return a velocity."""
     return GpsVelocity(stamp_ns(m.header.stamp), t_recv_ns, _xyz(m.twist.linear))
+
+
+def visual_motion(m: RosMessage, t_recv_ns: int) -> VisualMotion:
+    """Return the motion that a front end had found."""
+    return VisualMotion(
+        stamp_ns(m.header.stamp),
+        t_recv_ns,
+        int(m.frame_id),
+        stamp_ns(m.key_stamp),
+        np.array(m.r_key_cam, np.float64).reshape(3, 3),
+        _xyz(m.direction_key),
+        int(m.inliers),
+        float(m.parallax_px),
+        bool(m.is_keyframe),
+    )
 
 
 def true_pose(m: RosMessage, t_recv_ns: int) -> TruePose:
