@@ -22,6 +22,10 @@ ALLOWED_LIBRARIES = {
     "tracker/ros_messages.py": {"rosbags"},
     "tracker/geomagnetism.py": {"pygeomag"},
     "tracker/sources/camera.py": {"cv2"},
+    "tracker/sources/nmea_sentence.py": {"pynmeagps"},
+    "tracker/sources/serial_port.py": {"serial"},
+    "tracker/sources/camera_file.py": {"cv2"},
+    "tracker/sources/camera_mode.py": {"cv2"},
     "tracker/sources/phidget.py": {"Phidget22"},
 }
 """What a file of the tracker may import besides numpy, Python and the tracker itself: files at its border, and no others."""

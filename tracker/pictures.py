@@ -1,6 +1,7 @@
 """Pictures as logs and cameras hold them, decoded only when somebody looks."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import cv2
@@ -62,7 +63,7 @@ class VideoPicture:
 
 @dataclass(frozen=True, eq=False)
 class ArrayPicture:
-    """A picture in memory, (height, width, 3) uint8, blue first: what a renderer makes."""
+    """A picture in memory, (height, width, 3) uint8, blue first: what a renderer makes, or a camera that knows no JPEG."""
 
     pixels: Image
 
@@ -75,7 +76,11 @@ class ArrayPicture:
         return self.pixels
 
     def jpeg(self) -> bytes:
-        """The picture as JPEG."""
+        """The picture as JPEG, encoded the first time that somebody asks: a recorder and the wire want the same bytes."""
+        return self._jpeg
+
+    @cached_property
+    def _jpeg(self) -> bytes:
         return encode_jpeg(self.pixels)
 
 

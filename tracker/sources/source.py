@@ -22,7 +22,7 @@ class SourceStatus:
     """Whether its device or stream is there now."""
     detail: str
     """The device's name and serial number, or one sentence on what is missing and what to do."""
-    counts: Mapping[str, int] = _NOTHING
+    counts: Mapping[str, int] = field(default_factory=lambda: _NOTHING)
     """What was received and what was refused, by reason."""
     facts: Mapping[str, object] = field(default_factory=lambda: MappingProxyType({}))
     """What else a person wants to see, as JSON values: satellites in view, the camera's mode, the clock's offset."""
