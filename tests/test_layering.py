@@ -27,6 +27,9 @@ ALLOWED_LIBRARIES = {
     "tracker/sources/camera_file.py": {"cv2"},
     "tracker/sources/camera_mode.py": {"cv2"},
     "tracker/sources/phidget.py": {"Phidget22"},
+    "tracker/sources/phidget_gps.py": {"Phidget22"},
+    "tracker/sources/phidget_spatial.py": {"Phidget22"},
+    "tracker/sources/phidget_library.py": {"libusb_package"},
 }
 """What a file of the tracker may import besides numpy, Python and the tracker itself: files at its border, and no others."""
 
