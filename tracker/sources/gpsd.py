@@ -1,10 +1,10 @@
 """A receiver that a running gpsd has: its TCP protocol, of which the NMEA sentences are read.
 
-gpsd offers what a receiver says (`nmea`) and its own view of it (TPV and SKY as JSON). The sentences lose least: each is handed on
-when it is here, where TPV waits for what gpsd takes for an epoch's end, and quality, dilutions and deviations come with the position
-that they are of. For receivers that speak a binary protocol gpsd writes GGA, RMC, GSA and GSV itself; their own error estimates are
-then lost, and dilution counts. JSON is watched too, because it alone tells of receivers that come and go. Sentences with a wrong
-checksum are refused by gpsd and never seen here.
+gpsd offers what a receiver says (`nmea`) and its own view of it (TPV and SKY as JSON). The sentences lose least: each is handed
+on when it is here, where TPV waits for what gpsd takes for an epoch's end, and quality, dilutions and deviations come with the
+position that they are of. For receivers that speak a binary protocol gpsd writes GGA, RMC, GSA and GSV itself; their own error
+estimates are then lost, and dilution counts. JSON is watched too, because it alone tells of receivers that come and go.
+Sentences with a wrong checksum are refused by gpsd and never seen here.
 
 Reference:
     gpsd_json(5): https://gpsd.gitlab.io/gpsd/gpsd_json.html
