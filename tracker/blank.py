@@ -2,18 +2,25 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
 from tracker.log import Log
-from tracker.measurements import Frame, Measurement
-from tracker.pictures import ArrayPicture
+from tracker.measurements import Frame, Measurement, Picture
+from tracker.pictures import EncodedPicture, encode_jpeg
 from tracker.rig import CameraModel
 
 RATE_HZ = 10.0
 CAMERA = CameraModel(640, 480, 554.0, 554.0, 319.5, 239.5)
 """60 degrees wide."""
 _GREY = 92
+
+
+@cache
+def blank_picture() -> Picture:
+    """Return the empty picture."""
+    return EncodedPicture(encode_jpeg(np.full((CAMERA.height_px, CAMERA.width_px, 3), _GREY, np.uint8)))
 
 
 @dataclass(frozen=True)
@@ -27,7 +34,7 @@ class BlankCamera:
         return self._with_pictures(self.log.messages(start_ns=start_ns), start_ns or 0)
 
     def _with_pictures(self, measurements: Iterable[Measurement], start_ns: int) -> Iterator[Measurement]:
-        picture = ArrayPicture(np.full((CAMERA.height_px, CAMERA.width_px, 3), _GREY, np.uint8))
+        picture = blank_picture()
         begin_ns, period_ns = self.log.info.t_start_ns, round(1e9 / RATE_HZ)
         frame_id = max(0, -((begin_ns - start_ns) // period_ns))
         for measurement in measurements:

@@ -1,0 +1,57 @@
+"""What is withheld from the estimator: stamps that do not rise, and sensors that say one thing for ever."""
+
+from tracker.measurements import GpsFix, GpsVelocity, ImuSample
+from tracker.running.guard import Guard
+
+S = 1_000_000_000
+
+
+def _imu(index: int, gyro_x: float = 0.1) -> ImuSample:
+    t_ns = index * S // 100
+    return ImuSample(t_ns, t_ns, (gyro_x, 0.0, 0.0), (0.0, 0.0, 9.81))
+
+
+def _fix(second: int, lat_deg: float = 37.9) -> GpsFix:
+    return GpsFix(second * S, second * S, lat_deg, 27.3, 80.0, (0.0,) * 9)
+
+
+def test_an_inertial_unit_that_repeats_one_value_is_withheld_after_a_quarter_of_a_second() -> None:
+    """Until it says something else; equal numbers twice are nothing."""
+    guard = Guard()
+    kept = [not guard.withholds(_imu(index), 0.0) for index in range(100)]
+    assert kept.count(True) == 25
+    stuck = [guard.imu_stuck]
+    assert not guard.withholds(_imu(100, 0.2), 0.0)
+    assert [*stuck, guard.imu_stuck] == [True, False]
+    assert guard.withheld == {"imu_repeats": 75}
+
+
+def test_a_slow_unit_is_given_as_many_samples() -> None:
+    """At 16 Hz a quarter of a second are four."""
+    guard = Guard()
+    assert not any(guard.withholds(ImuSample(i * S // 16, i * S // 16, (0.0,) * 3, (0.0,) * 3), 0.0) for i in range(24))
+
+
+def test_a_receiver_that_repeats_itself_is_withheld_where_the_rig_walks() -> None:
+    """And stays so when the rig stands, until it says something else; so does its velocity."""
+    guard = Guard()
+    assert [guard.withholds(_fix(second), 1.2) for second in range(5)] == [False, False, False, True, True]
+    assert guard.gps_stuck
+    assert guard.withholds(GpsVelocity(4 * S, 4 * S, (0.0, 0.0, 0.0)), 0.0)
+    assert guard.withholds(_fix(5), 0.0)
+    assert not guard.withholds(_fix(6, 37.91), 1.2)
+    assert not guard.withholds(GpsVelocity(6 * S, 6 * S, (0.0, 0.0, 0.0)), 0.0)
+    assert guard.withheld == {"gps_repeats": 4}
+
+
+def test_a_receiver_may_repeat_itself_where_the_rig_stands() -> None:
+    """Some hold their position on purpose."""
+    guard = Guard()
+    assert not any(guard.withholds(_fix(second), 0.1) for second in range(60))
+
+
+def test_stamps_out_of_order_are_withheld() -> None:
+    """As a log's reader leaves them out: a replay must see the same."""
+    guard = Guard()
+    assert [guard.withholds(_imu(i, 0.01 * i), 0.0) for i in (1, 3, 2, 3, 4)] == [False, False, True, True, False]
+    assert guard.withheld == {"stamp_went_back": 1, "duplicate_stamp": 1}

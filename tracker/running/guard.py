@@ -1,0 +1,70 @@
+"""What a broken sensor says is withheld from the estimator: stamps out of order, and one value again and again. Pure."""
+
+from collections import Counter
+
+from tracker.measurements import GpsFix, GpsVelocity, ImuSample, Measurement, Vector3
+from tracker.soundness import Soundness
+
+#: A sensor's noise makes six equal numbers twice in a row rare; so many times, and for so long, they are not measured.
+_SAMES, _SAME_NS = 25, 250_000_000
+#: A receiver may repeat a position while the rig stands. While it walks faster than this,
+_WALKS_M_S = 0.5
+#: no position stays the same for so long.
+_STAYS_NS = 2_500_000_000
+
+
+class Guard:
+    """Sees every measurement in the order in which it would be fed."""
+
+    def __init__(self) -> None:
+        self._soundness = Soundness()
+        self._imu = _Repeats()
+        self._gps = _Repeats()
+        self.imu_stuck = False
+        """Whether the inertial unit repeats itself."""
+        self.gps_stuck = False
+        """Whether the receiver repeats a position while the rig walks."""
+        self.withheld: Counter[str] = Counter()
+        """By reason."""
+
+    def withholds(self, measurement: Measurement, speed_m_s: float) -> bool:
+        """Return whether a measurement must not be fed; `speed_m_s` is what the estimator believes of the rig."""
+        fault = self._soundness.fault(measurement)
+        if fault is None:
+            fault = self._stuck(measurement, speed_m_s)
+        if fault is not None:
+            self.withheld[fault] += 1
+        return fault is not None
+
+    def _stuck(self, measurement: Measurement, speed_m_s: float) -> str | None:
+        match measurement:
+            case ImuSample():
+                count, since_ns = self._imu.count((*measurement.gyro_rad_s, *measurement.accel_m_s2), measurement.t_ns)
+                self.imu_stuck = count >= _SAMES and measurement.t_ns - since_ns >= _SAME_NS
+                return "imu_repeats" if self.imu_stuck else None
+            case GpsFix(valid=True):
+                place: Vector3 = (measurement.lat_deg, measurement.lon_deg, measurement.h_ellipsoid_m)
+                _, since_ns = self._gps.count(place, measurement.t_ns)
+                stays = measurement.t_ns - since_ns
+                # once stuck it is so until it says something else: standing still does not make it right again
+                self.gps_stuck = stays > 0 and (self.gps_stuck or (stays >= _STAYS_NS and speed_m_s > _WALKS_M_S))
+                return "gps_repeats" if self.gps_stuck else None
+            case GpsVelocity():
+                return "gps_repeats" if self.gps_stuck else None
+        return None
+
+
+class _Repeats:
+    """How often, and since when, the same numbers have come."""
+
+    def __init__(self) -> None:
+        self._numbers: tuple[float, ...] = ()
+        self._count = 0
+        self._since_ns = 0
+
+    def count(self, numbers: tuple[float, ...], t_ns: int) -> tuple[int, int]:
+        """Take the next numbers; return how many there are of them in a row, and the stamp of the first."""
+        if numbers != self._numbers:
+            self._numbers, self._count, self._since_ns = numbers, 0, t_ns
+        self._count += 1
+        return self._count, self._since_ns
