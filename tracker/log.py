@@ -17,6 +17,8 @@ from tracker import ros_messages as ros
 from tracker.container import Container, Stored
 from tracker.errors import MalformedInput
 from tracker.estimator import Origin
+from tracker.log_nmea import TOPIC as NMEA
+from tracker.log_nmea import LoggedSentences, SentenceContents
 from tracker.measurements import Frame, GpsFix, Matrix, Measurement
 from tracker.pictures import EncodedPicture
 from tracker.rig import CameraModel, Rig
@@ -30,6 +32,7 @@ TOPICS: dict[str, tuple[str, str]] = {
     "/compass/heading": (ros.COMPASS, "compass"),
     "/gps/fix": (ros.FIX, "gps"),
     "/gps/vel": (ros.VELOCITY, "gps_velocity"),
+    NMEA: (ros.SENTENCE, "gps"),
     "/camera/image/compressed": (ros.IMAGE, "frames"),
     "/camera/video": (ros.VIDEO, "frames"),
     "/camera/motion": (ros.MOTION, "motions"),
@@ -98,10 +101,11 @@ class Log:
         """
         contents = _Contents()
         container = Container(path, contents.visit)
+        contents.choose_receiver()
         counts = contents.counts
         if not counts["imu"] and not counts["gps"]:
             raise MalformedInput(
-                f"{path} holds no IMU and no GPS: a walk needs /imu/data_raw, /gps/fix or both (it has "
+                f"{path} holds no IMU and no GPS: a walk needs /imu/data_raw, or /gps/fix or /gps/nmea, or both (it has "
                 f"{', '.join(sorted(contents.topics)) or 'no messages'})."
             )
         return cls(container, contents)
@@ -128,6 +132,9 @@ class _Contents:
         self.camera_times_ns: list[int] = []
         self.key_times_ns: list[int] = []
         self._times_ns: tuple[int, int] | None = None
+        self.speaks_nmea = False
+        """Whether fixes and velocities come from the receiver's own sentences, and `/gps/fix` and `/gps/vel` are left alone."""
+        self._sentences = SentenceContents()
         self._first_fix: GpsFix | None = None
         self._truth_origin: Origin | None = None
         self._encoding: Literal["jpeg", "png", "h264"] | None = None
@@ -142,6 +149,9 @@ class _Contents:
         self.topics.add(stored.topic)
         ros_type, sensor = TOPICS.get(stored.topic, ("", ""))
         if stored.ros_type != ros_type:
+            return
+        if stored.topic == NMEA:
+            self._sentences.visit(stored.data, t_ns)
             return
         if sensor:
             self.counts[sensor] += 1
@@ -176,6 +186,12 @@ class _Contents:
             if fix.valid and isfinite(fix.lat_deg + fix.lon_deg + fix.h_ellipsoid_m):
                 self._first_fix = fix
 
+    def choose_receiver(self) -> None:
+        """Choose between the receiver's sentences and what a driver made of them, once everything was visited."""
+        if self._sentences.fixes:
+            self.speaks_nmea, self._first_fix = True, self._sentences.first_fix
+            self.counts |= {"gps": self._sentences.fixes, "gps_velocity": self._sentences.velocities}
+
     def info(self, truncated: bool, utc_start_ns: int | None) -> LogInfo:
         """Return what was found."""
         first, last = self._times_ns or (0, 0)
@@ -208,12 +224,13 @@ class _Reading:
             topic
             for topic, (_, sensor) in TOPICS.items()
             if sensor and (camera or sensor != "frames") and (truth or sensor != "truth")
-        }
+        } - ({"/gps/fix", "/gps/vel"} if log._contents.speaks_nmea else {NMEA})
         R_body_imu = log.rig.T_body_imu[:3, :3]
         self._R_body_imu = None if np.array_equal(R_body_imu, np.eye(3)) else R_body_imu
         self._soundness = Soundness()
         self._decoder = VideoDecoder()
         self._waiting: dict[int, tuple[int, int]] = {}
+        self._sentences = LoggedSentences()
 
     def measurements(self) -> Iterator[Measurement]:
         """Yield them."""
@@ -222,7 +239,11 @@ class _Reading:
             keys = self._contents.key_times_ns
             begin_ns = min(begin_ns, keys[max(0, bisect_right(keys, begin_ns) - 1)])
         frame_id = bisect_left(self._contents.camera_times_ns, begin_ns)
+        t_last_ns = self._start_ns
+        if self._start_ns and NMEA in self._wanted:
+            self._hear_what_was_said_before()
         for stored in self._container.messages(begin_ns, self._is_wanted):
+            t_last_ns = stored.t_recv_ns
             is_camera = stored.topic in _CAMERA
             if is_camera:
                 frame_id += 1
@@ -231,6 +252,15 @@ class _Reading:
             for measurement in self._parse(stored, frame_id - 1):
                 if measurement.t_recv_ns >= self._start_ns and self._is_sound(measurement):
                     yield measurement
+        yield from filter(self._is_sound, self._sentences.close(t_last_ns))
+
+    def _hear_what_was_said_before(self) -> None:
+        """Bring the reader of sentences to where it would be: what a receiver says now depends on what it has said."""
+        for stored in self._container.messages(0, lambda topic: topic == NMEA):
+            if stored.t_recv_ns >= self._start_ns:
+                return
+            for _ in self._parse(stored, 0):
+                pass
 
     def _is_wanted(self, topic: str) -> bool:
         if topic not in TOPICS:
@@ -258,6 +288,11 @@ class _Reading:
                 yield ros.gps_fix(message, t_ns)
             case "/gps/vel":
                 yield ros.gps_velocity(message, t_ns)
+            case "/gps/nmea":
+                yield from self._sentences.take(message, t_ns)
+                self._skipped |= Counter(
+                    self._sentences.left_out
+                )  # the larger of each: it counts on from the beginning
             case "/camera/motion":
                 yield ros.visual_motion(message, t_ns)
             case "/ground_truth/odom":

@@ -147,6 +147,11 @@ class LogWriter:
             case _:
                 raise ValueError(f"logs do not hold {type(measurement).__name__}")
 
+    def write_sentence(self, t_recv_ns: int, sentence: str) -> None:
+        """Write a line of NMEA as it was received. Readers take fixes and velocities from these where there are any."""
+        header = ros.header(t_recv_ns, "gps_link")
+        self._put("/gps/nmea", ros.message(ros.SENTENCE, header=header, sentence=sentence), t_recv_ns)
+
     def _put(self, topic: str, message: ros.RosMessage, t_recv_ns: int) -> None:
         ros_type = message.__msgtype__
         if topic not in self._channels:

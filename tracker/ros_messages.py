@@ -32,9 +32,11 @@ IMU, MAG, COMPASS = "sensor_msgs/msg/Imu", "sensor_msgs/msg/MagneticField", "geo
 FIX, VELOCITY, ODOMETRY = "sensor_msgs/msg/NavSatFix", "geometry_msgs/msg/TwistStamped", "nav_msgs/msg/Odometry"
 IMAGE, VIDEO = "sensor_msgs/msg/CompressedImage", "foxglove_msgs/msg/CompressedVideo"
 MOTION = "agora_msgs/msg/VisualMotion"
+SENTENCE = "nmea_msgs/msg/Sentence"
 CAMERA_INFO, TF = "sensor_msgs/msg/CameraInfo", "tf2_msgs/msg/TFMessage"
 
 _VIDEO_DEFINITION = "builtin_interfaces/Time timestamp\nstring frame_id\nuint8[] data\nstring format\n"
+_SENTENCE_DEFINITION = "std_msgs/Header header\nstring sentence\n"
 
 #: Ours, since ROS has none: what the camera's front end made of a picture. `header.stamp` is the picture's.
 _MOTION_DEFINITION = """std_msgs/Header header
@@ -49,6 +51,7 @@ bool is_keyframe
 
 TYPES = get_typestore(Stores.ROS2_HUMBLE)
 TYPES.register(get_types_from_msg(_VIDEO_DEFINITION, VIDEO))
+TYPES.register(get_types_from_msg(_SENTENCE_DEFINITION, SENTENCE))
 TYPES.register(get_types_from_msg(_MOTION_DEFINITION, MOTION))
 
 NS = 1_000_000_000
