@@ -2,34 +2,32 @@
 
 from concurrent.futures import CancelledError
 from dataclasses import dataclass, replace
-from time import monotonic_ns
-from typing import Literal
 
 from server.console import Console
 from server.messages import ControlReply, ControlRequest
-from server.push import RigLink, frame_message, pose_message
+from server.placing import Anchor, Height, Placing
+from server.presenting import Presenter
+from server.push import RigLink
 from server.standing import FAR_M, distance_m
 from tracker.blank import CAMERA, BlankCamera
 from tracker.errors import InputError, MalformedInput
-from tracker.estimator import Origin, Pose
-from tracker.estimators import DEFAULT_ESTIMATOR, ESTIMATORS, PRECISE, missing_sensors
+from tracker.estimator import Origin
+from tracker.estimators import DEFAULT_ESTIMATOR, ESTIMATORS, missing_sensors
 from tracker.evaluate import make_pipeline
-from tracker.geometry import transform
-from tracker.grounding import GroundHeight, on_ground
-from tracker.levelled import Levelled
+from tracker.grounding import GroundHeight
 from tracker.log import Log
 from tracker.measurements import Frame
 from tracker.pipeline import Pipeline
 from tracker.playback import Playback, Recording, Shown
 from tracker.precise.ground import EyeHeight
-from tracker.rig import CameraModel, Rig
+from tracker.rig import Rig, guessed_camera
 from tracker.runner import Player, PlayerState, ReadAhead, VisionThread
 from tracker.upright import Upright
 
+#: Said of a camera whose lens is guessed.
+UNCALIBRATED = "This camera was never calibrated: a lens 60 degrees wide is assumed, so the square may not fit."
 #: The best first: what plays when nothing was chosen.
 PREFERENCE = (DEFAULT_ESTIMATOR, "gps-imu/precise", "truth")
-#: Where a camera's intrinsics are unknown: a usual webcam, 60 degrees wide.
-_GUESSED_FOCAL = 0.87
 
 
 @dataclass(frozen=True)
@@ -38,9 +36,11 @@ class ReplaySettings:
 
     estimator: str | None = None
     """None for the best that the log's sensors allow."""
-    anchor: Literal["site", "here"] = "site"
-    height: Literal["ground", "gps"] = "ground"
+    anchor: Anchor = "site"
+    height: Height = "ground"
     looping: bool = False
+    look_again: bool = False
+    """Look at the pictures anew where the log holds what the live front end had made of them."""
 
 
 class Replay:
@@ -73,8 +73,8 @@ class Replay:
             MissingSensor: No estimator can.
         """
         self._log, self._settings, self._console = log, settings, console
-        self._ground_z_m, self._eyes_z_m, self._eye_height_m = ground_z_m, eyes_z_m, eye_height_m
-        self._origin = self._anchor(site_origin)
+        self._placing = Placing(site_origin, ground_z_m, eyes_z_m, eye_height_m, settings.anchor, settings.height)
+        self._origin = self._placing.origin(log.info.first_fix)
         self._rig = _display_rig(log)
         self._vision: VisionThread | None = None
         self.estimator = settings.estimator or self._best()
@@ -92,14 +92,7 @@ class Replay:
             report=self._report,
         )
         self._link: RigLink | None = None
-        self._sequence = 0
-
-    def _anchor(self, site_origin: Origin) -> Origin:
-        """Return where the site frame is laid: where it is, or with its origin under the walk's first fix."""
-        fix = self._log.info.first_fix
-        if self._settings.anchor == "site" or fix is None:
-            return site_origin
-        return Origin(fix.lat_deg, fix.lon_deg, fix.h_ellipsoid_m - self._eye_height_m)
+        self._presenter: Presenter | None = None
 
     def _best(self) -> str:
         """What nobody can place on the square plays as its truth, or not at all: the last name then says what is missing."""
@@ -108,10 +101,9 @@ class Replay:
         return next((name for name in placed if missing_sensors(name, info, rig) is None), "gps-imu/famm")
 
     def _make_pipeline(self, name: str) -> Pipeline:
-        eyes_z_m = self._eyes_z_m if self._measures_ground(name) else None
-        pipeline = make_pipeline(name, self._log, self._origin, eyes_z_m=eyes_z_m)
-        if self._settings.anchor == "here":
-            pipeline.estimator = Levelled(pipeline.estimator, self._eye_height_m)
+        eyes_z_m, look_again = self._placing.eyes_for(name), self._settings.look_again
+        pipeline = make_pipeline(name, self._log, self._origin, eyes_z_m=eyes_z_m, look_again=look_again)
+        pipeline = self._placing.levelled(pipeline)
         if self._vision is not None:
             self._vision.close()
             self._vision = None
@@ -122,15 +114,10 @@ class Replay:
             self._console.clear()
         return pipeline
 
-    def _measures_ground(self, estimator: str) -> bool:
-        """Whether the estimator itself asks for the ground. Where the walk was elsewhere, the site's is not what was walked on."""
-        return (
-            estimator.endswith(f"/{PRECISE}") and self._settings.anchor == "site" and self._settings.height == "ground"
-        )
-
     def start(self, rig_url: str, token: str) -> None:
         """Connect to the server and play."""
         self._link = RigLink(rig_url, token, self._control)
+        self._presenter = Presenter(self._link, self._rig, self._console)
         self._link.send_state(self._description())
         self.player.start()
 
@@ -175,41 +162,13 @@ class Replay:
         if not info.counts["frames"]:
             return "This walk has no camera: the square is drawn over an empty picture."
         if self._log.rig.camera is None:
-            return "This camera was never calibrated: a lens 60 degrees wide is assumed, so the square may not fit."
+            return UNCALIBRATED
         return None
 
     def _show(self, shown: Shown, state: PlayerState, did_seek: bool) -> None:
-        if self._link is None:
-            return
-        pose = self._placed(shown.pose, state.estimator)
-        try:
-            message = frame_message(
-                shown.frame,
-                pose,
-                self._rig,
-                estimator=state.estimator,
-                position_s=state.position_s,
-                t_sent_ns=monotonic_ns(),
-                quarter_turns=shown.quarter_turns,
-                did_seek=did_seek,
-            )
-        except MalformedInput:
-            return  # a picture that does not decode is left out, as vision leaves it out
-        self._link.send_frame(message)
-        if pose is None:
-            return
-        self._sequence += 1
-        self._link.send_pose(pose_message(pose, seq=self._sequence, estimator=state.estimator))
-        if self._console is not None and self._rig.camera is not None:
-            if did_seek:
-                self._console.clear()
-            T_site_cam = transform(pose.wxyz_site_body, pose.p_site_m) @ self._rig.T_body_cam
-            self._console.show(T_site_cam, self._rig.camera, pose.motion_model)
-
-    def _placed(self, pose: Pose | None, estimator: str) -> Pose | None:
-        if pose is None or estimator == "truth" or self._settings.height == "gps" or self._measures_ground(estimator):
-            return pose
-        return on_ground(pose, self._ground_z_m, self._eye_height_m)
+        if self._presenter is not None:
+            pose = self._placing.placed(shown.pose, state.estimator)
+            self._presenter.show(shown, pose, estimator=state.estimator, position_s=state.position_s, did_seek=did_seek)
 
     def _report(self, state: PlayerState) -> None:
         if self._link is not None:
@@ -247,7 +206,5 @@ def _display_rig(log: Log) -> Rig:
                 height_px, width_px = measurement.picture.gray().shape
             except MalformedInput:
                 continue
-            focal_px = _GUESSED_FOCAL * max(width_px, height_px)
-            centre = ((width_px - 1) / 2.0, (height_px - 1) / 2.0)
-            return replace(log.rig, camera=CameraModel(width_px, height_px, focal_px, focal_px, *centre))
+            return replace(log.rig, camera=guessed_camera(width_px, height_px))
     return replace(log.rig, camera=CAMERA)

@@ -30,6 +30,16 @@ class CameraModel:
         return np.array([[self.fx_px, 0.0, self.cx_px], [0.0, self.fy_px, self.cy_px], [0.0, 0.0, 1.0]])
 
 
+#: Where a camera's intrinsics are unknown: a usual webcam, 60 degrees wide.
+_GUESSED_FOCAL = 0.87
+
+
+def guessed_camera(width_px: int, height_px: int) -> CameraModel:
+    """Return a usual webcam, for a camera that was never calibrated and pictures of such a size."""
+    focal_px = _GUESSED_FOCAL * max(width_px, height_px)
+    return CameraModel(width_px, height_px, focal_px, focal_px, (width_px - 1) / 2.0, (height_px - 1) / 2.0)
+
+
 def _identity() -> Matrix:
     return np.eye(4)
 

@@ -110,6 +110,8 @@ class Health:
 
 #: The rate is of the measurements within this time, of at most so many.
 _RATE_S, _RATE_MOST = 2.0, 1024
+#: What a device said just before it was pulled out may still be on its way.
+_UNPLUGGED_NS = 200_000_000
 
 
 class Watch:
@@ -172,7 +174,7 @@ class Watch:
             return SensorState.FAILED, f"cannot be used: {_clause(self._failed)}."
         if self._lost is not None:
             return SensorState.LOST, f"is gone: {_clause(self._lost)}. It is looked for again and again."
-        if status is not None and not status.attached and self._is_quiet(now_ns):
+        if status is not None and not status.attached and self._is_unplugged(now_ns):
             return SensorState.LOST, f"is not there: {_clause(status.detail)}."
         if self._newest_ns is None:
             if now_ns - self._since_ns <= kind.silent_s * 1e9:
@@ -186,6 +188,12 @@ class Watch:
         if self.is_unusable:
             return SensorState.UNUSABLE, f"{kind.unusable}."
         return SensorState.STREAMING, f"is well: {self._rate_hz(now_ns):.0f} {kind.unit} a second."
+
+    def _is_unplugged(self, now_ns: int) -> bool:
+        """Return whether a device that its source says is not there has been there, or has had its time to come."""
+        if self._newest_ns is None:
+            return self._is_quiet(now_ns)
+        return now_ns - self._newest_ns > _UNPLUGGED_NS
 
     def _is_quiet(self, now_ns: int) -> bool:
         since_ns = self._since_ns if self._newest_ns is None else self._newest_ns

@@ -81,7 +81,7 @@ class LiveWalk:
         sources: Sequence[Source],
         *,
         show: Callable[[Shown], None] = lambda shown: None,
-        show_pose: Callable[[Pose], None] = lambda pose: None,
+        show_pose: Callable[[Pose | None], None] = lambda pose: None,
         recorder: Recorder | None = None,
     ) -> None:
         """Prepare a walk.
@@ -90,7 +90,7 @@ class LiveWalk:
             core: Used by the fusion thread alone from now on.
             sources: One for each of the core's sensors.
             show: Takes each picture with the pose of its capture, on a thread of its own; the newest wins where it is slow.
-            show_pose: Takes the newest pose between pictures, on the same thread.
+            show_pose: Takes the newest pose, or None, where no picture comes for 50 ms, on the same thread.
             recorder: Is given what the core records by whoever made the core; closed here, last.
         """
         self._core, self._show, self._show_pose, self._recorder = core, show, show_pose, recorder
@@ -241,8 +241,8 @@ class LiveWalk:
             try:
                 if shown is not None:
                     self._show(shown)
-                elif (pose := self.pose) is not None:
-                    self._show_pose(pose)
+                else:
+                    self._show_pose(self.pose)
             except Exception:
                 _logger.exception("a picture could not be shown")
 

@@ -70,8 +70,8 @@ def test_a_source_that_waits_for_its_device_says_so_itself() -> None:
     """It need not end for that: some libraries wait for the plug by themselves."""
     watch = _streaming("gps", 2.0)
     gone = SourceStatus(False, "no PhidgetGPS is plugged in: plug it in")
-    assert watch.read(2 * S + S // 2, gone).state is SensorState.STREAMING
-    health = watch.read(6 * S, gone)
+    assert watch.read(2 * S + S // 10, gone).state is SensorState.STREAMING
+    health = watch.read(2 * S + S // 2, gone)
     assert (health.state, health.sentence) == (
         SensorState.LOST,
         "The GPS receiver is not there: no PhidgetGPS is plugged in: plug it in.",
