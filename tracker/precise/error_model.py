@@ -1,8 +1,9 @@
 """The error of the filter: its layout, what a step makes of it, and what it is at the start.
 
-The error is (dp, dv, dtheta, dbg, dba, e, m, s, clones): position, velocity and rotation vector in site axes, biases in body axes,
-nine states of the receiver's error (unit variance; three correlation times for each axis), the magnetic deviation, the scale of
-turns about the body's z, and for every held picture its position and rotation. dtheta is on the left: R_true = Exp(dtheta) R.
+The error is (dp, dv, dtheta, dbg, dba, e, m, G, clones): position, velocity and rotation vector in site axes, biases in body axes,
+nine states of the receiver's error (unit variance; three correlation times for each axis), the magnetic deviation, the scales and
+leans of the gyroscope's axes (row by row), and for every held picture its position and rotation. dtheta is on the left:
+R_true = Exp(dtheta) R.
 
 Reference:
     Sola, Quaternion kinematics for the error-state Kalman filter, 2017, chapter 7 (global angular error).
@@ -19,9 +20,10 @@ GPS_ERROR = slice(15, 24)
 MAGNETIC = 24
 #: States that forget: the receiver's error and the magnetic deviation.
 FORGETTING = slice(15, 25)
-#: A walk round a square turns one way: half a percent of a hundred quarter turns is more than the receiver can correct.
-TURN_SCALE = 25
-SIZE = 26
+#: A walk round a square turns one way: half a percent of a hundred quarter turns is more than the receiver can correct. And a head
+#: that looks to the side and back tilts by the lean of the axes.
+GYRO_AXES = slice(25, 34)
+SIZE = 34
 
 
 class ProcessNoise:
@@ -47,7 +49,7 @@ class ProcessNoise:
         return self._kept
 
     def added(self, dt_s: float) -> Matrix:
-        """(26,) variances."""
+        """(34,) variances."""
         added = self._rates * dt_s
         added[P] = self.velocity * dt_s**3 / 3.0
         added[FORGETTING] = self._steady * (1.0 - self.kept(dt_s) ** 2)
@@ -55,14 +57,14 @@ class ProcessNoise:
 
 
 def start_covariance(settings: PreciseSettings, position_m: Vector3, velocity_m_s: float, yaw_rad: float) -> Matrix:
-    """Return the (26, 26) covariance of a start: standard deviations of position, velocity and yaw as given."""
+    """Return the (34, 34) covariance of a start: standard deviations of position, velocity and yaw as given."""
     sigma = np.zeros(SIZE)
     sigma[P], sigma[V] = position_m, velocity_m_s
     sigma[THETA] = (settings.tilt_rad, settings.tilt_rad, yaw_rad)
     sigma[BG], sigma[BA] = settings.gyro_bias_rad_s, settings.accel_bias_m_s2
     sigma[GPS_ERROR] = np.sqrt(np.repeat(settings.gps_error_share, 3))
     sigma[MAGNETIC] = settings.magnetic_deviation_rad
-    sigma[TURN_SCALE] = settings.turn_scale
+    sigma[GYRO_AXES] = settings.gyro_axes
     return np.diag(sigma**2)
 
 

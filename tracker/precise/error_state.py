@@ -21,12 +21,13 @@ from tracker.measurements import Matrix, Vector3
 from tracker.precise.error_model import (
     FORGETTING,
     GPS_ERROR,
+    GYRO_AXES,
     MAGNETIC,
     SIZE,
-    TURN_SCALE,
     P,
     ProcessNoise,
     inertial_transition,
+    skew,
 )
 from tracker.precise.navigation import Biases, Navigation, advance
 from tracker.precise.settings import PreciseSettings
@@ -71,7 +72,7 @@ class ErrorState:
     def __init__(
         self, settings: PreciseSettings, nav: Navigation, biases: Biases, covariance: Matrix, gravity_m_s2: float
     ) -> None:
-        """`covariance` is (26, 26), without clones."""
+        """`covariance` is (34, 34), without clones."""
         self.settings = settings
         self.nav = nav
         self.biases = biases
@@ -116,7 +117,7 @@ class ErrorState:
         cov[:, FORGETTING] *= keep
         cov[_DIAGONAL] += self._noise.added(dt)
         turned = log_rotation(multiply(end.wxyz_site_body, conjugate(start.wxyz_site_body)))
-        self._scale_turn(R_mean[:, 2], turned, gained, dt)
+        self._lean(R_mean, turned, gained, dt)
         index = np.arange(3)
         cov[6 + index, 6 + index] += (self.settings.gyro_scale * hypot(*turned)) ** 2
         shaken = np.array(end.v_m_s) - np.array(start.v_m_s)
@@ -128,14 +129,16 @@ class ErrorState:
         self.magnetic_rad *= float(keep[9])
         self._chunk_nav, self._chunk_R = end, R_end
 
-    def _scale_turn(self, up: Matrix, turned_rad: Vector3, gained_m_s: Matrix, dt_s: float) -> None:
-        """Add to the motion what the scale of turns is unsure of; `up` is the body's z in site, (3,)."""
+    def _lean(self, R_site_body: Matrix, turned_rad: Vector3, gained_m_s: Matrix, dt_s: float) -> None:
+        """Add to the motion what the gyroscope's axes are unsure of; `turned_rad` is in site."""
+        turned_body = R_site_body.T @ turned_rad
+        told = turned_body + np.array(self.biases.gyro_axes) @ turned_body
+        turn = -np.outer(R_site_body, told).reshape(3, 9)
+        bent = skew(gained_m_s) @ turn
+        by_axes = np.concatenate([-dt_s / 6.0 * bent, -0.5 * bent, turn])
         cov = self.covariance
-        turn = -float(up @ turned_rad) / (1.0 - self.biases.turn_scale) * up
-        bent = np.cross(gained_m_s, turn)
-        by_scale = np.concatenate([-dt_s / 6.0 * bent, -0.5 * bent, turn])
-        cov[_MOTION, :] += np.outer(by_scale, cov[TURN_SCALE, :])
-        cov[:, _MOTION] += np.outer(cov[:, TURN_SCALE], by_scale)
+        cov[_MOTION, :] += by_axes @ cov[GYRO_AXES, :]
+        cov[:, _MOTION] += cov[:, GYRO_AXES] @ by_axes.T
 
     # -- update -------------------------------------------------------------------------------------------------------
 
@@ -204,8 +207,10 @@ class ErrorState:
         q = normalise(multiply(rotation_exp((e[6], e[7], e[8])), self.nav.wxyz_site_body))
         self.nav = Navigation(self.nav.t_ns, (px + e[0], py + e[1], pz + e[2]), (vx + e[3], vy + e[4], vz + e[5]), q)
         (gx, gy, gz), (ax, ay, az) = self.biases.gyro_rad_s, self.biases.accel_m_s2
-        scale = self.biases.turn_scale + e[TURN_SCALE]
-        self.biases = Biases((gx + e[9], gy + e[10], gz + e[11]), (ax + e[12], ay + e[13], az + e[14]), scale)
+        (a, b, c), (d, f, g), (h, i, j) = self.biases.gyro_axes
+        m = e[GYRO_AXES]
+        axes = ((a + m[0], b + m[1], c + m[2]), (d + m[3], f + m[4], g + m[5]), (h + m[6], i + m[7], j + m[8]))
+        self.biases = Biases((gx + e[9], gy + e[10], gz + e[11]), (ax + e[12], ay + e[13], az + e[14]), axes)
         self.gps_error = self.gps_error + error[GPS_ERROR]
         self.magnetic_rad += e[MAGNETIC]
         for index, clone in enumerate(self.clones):

@@ -16,14 +16,17 @@ class Navigation(NamedTuple):
     wxyz_site_body: Wxyz
 
 
+_NONE: Vector3 = (0.0, 0.0, 0.0)
+
+
 @dataclass(frozen=True, slots=True)
 class Biases:
     """What the inertial sensors say too much, body axes."""
 
     gyro_rad_s: Vector3 = (0.0, 0.0, 0.0)
     accel_m_s2: Vector3 = (0.0, 0.0, 0.0)
-    turn_scale: float = 0.0
-    """By what share turns about the body's z are told too large."""
+    gyro_axes: tuple[Vector3, Vector3, Vector3] = (_NONE, _NONE, _NONE)
+    """(3, 3): the share of a rate about the axis of the column that the axis of the row says too much."""
 
 
 def advance(
@@ -35,7 +38,10 @@ def advance(
     """
     dt = (t_ns - nav.t_ns) * 1e-9
     (gx, gy, gz), (bx, by, bz) = gyro_rad_s, biases.gyro_rad_s
-    wx, wy, wz = (gx - bx) * dt, (gy - by) * dt, (gz - bz) * (1.0 - biases.turn_scale) * dt
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = biases.gyro_axes
+    rx, ry, rz = (gx - bx) * dt, (gy - by) * dt, (gz - bz) * dt
+    wx, wy = rx - xx * rx - xy * ry - xz * rz, ry - yx * rx - yy * ry - yz * rz
+    wz = rz - zx * rx - zy * ry - zz * rz
     middle = multiply(nav.wxyz_site_body, exp((0.5 * wx, 0.5 * wy, 0.5 * wz)))
     (ax, ay, az), (cx, cy, cz) = accel_m_s2, biases.accel_m_s2
     fx, fy, fz = rotate(middle, (ax - cx, ay - cy, az - cz))

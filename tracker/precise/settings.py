@@ -17,12 +17,12 @@ class PreciseSettings:
     """White noise density; a few times the sensor's own, for scale and misalignment errors."""
     accel_noise_m_s2_sqrt_hz: float = 8e-3
     """White noise density of the accelerometer."""
-    gyro_scale: float = 0.005
-    """Error of scale and axes, as a share of each turn: what a fast head turn adds to the doubt of attitude."""
+    gyro_scale: float = 0.002
+    """What is left of errors of scale and axes, as a share of each turn: what a fast head turn adds to the doubt of attitude."""
     accel_scale: float = 0.005
     """Error of scale and axes, as a share of each change of velocity, gravity's included."""
-    turn_scale: float = 0.005
-    """Standard deviation of the scale of turns about the body's z, before anything was measured."""
+    gyro_axes: float = 0.005
+    """Standard deviation of the scales and leans of the gyroscope's axes, before anything was measured."""
     gyro_bias_walk_rad_s2_sqrt_hz: float = 5e-5
     """How fast the bias wanders."""
     accel_bias_walk_m_s3_sqrt_hz: float = 5e-4

@@ -5,7 +5,7 @@ import pytest
 
 from tests.benchmarks.endurance import GRAVITY_M_S2, endure, health, new_filter
 from tracker.precise import observations
-from tracker.precise.error_model import BA, BG, GPS_ERROR, MAGNETIC, THETA, P, V
+from tracker.precise.error_model import BA, BG, GPS_ERROR, MAGNETIC, SIZE, THETA, P, V
 
 S = 1_000_000_000
 UP = (0.0, 0.0, GRAVITY_M_S2)
@@ -18,7 +18,7 @@ def test_a_hundred_thousand_samples_of_everything() -> None:
     assert len(seen) == 100
     assert max(one.asymmetry for one in seen) < 1e-12
     assert min(one.least_eigenvalue for one in seen) > 0.0
-    assert {len(one.sigmas) for one in seen} >= {32, 38}, "pictures were held, and forgotten"
+    assert {len(one.sigmas) for one in seen} >= {SIZE + 6, SIZE + 12}, "pictures were held, and forgotten"
     assert max(one.sigmas[P].max() for one in seen) < 100.0
 
 

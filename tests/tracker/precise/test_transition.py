@@ -44,7 +44,7 @@ def _state(rng: Generator) -> ErrorState:
     for _ in range(2):
         state.hold(2)
         state.move(0.3 * rng.normal(size=len(state.covariance)))
-    state.biases = replace(state.biases, turn_scale=0.01)
+    state.biases = replace(state.biases, gyro_axes=((0.01, -0.02, 0.005), (0.01, 0.0, -0.01), (0.02, 0.01, 0.01)))
     root = rng.normal(size=state.covariance.shape)
     state.covariance = root @ root.T
     return state
@@ -67,7 +67,7 @@ def _difference(a: ErrorState, b: ErrorState) -> Matrix:
         np.subtract(b.biases.accel_m_s2, a.biases.accel_m_s2),
         b.gps_error - a.gps_error,
         [b.magnetic_rad - a.magnetic_rad],
-        [b.biases.turn_scale - a.biases.turn_scale],
+        np.subtract(b.biases.gyro_axes, a.biases.gyro_axes).ravel(),
     ]
     for one, other in zip(a.clones, b.clones, strict=True):
         parts += [
