@@ -6,15 +6,10 @@ from typing import Self
 
 from assets.site import Site
 from assets.terrain import build_terrain
-from server.app import create_app
-from server.auth import new_token
-from server.console import Console
-from server.errors import ConsoleUnavailable
+from server.local import LocalServer
 from server.replay import Replay, ReplaySettings
 from server.sessions import session_name
-from server.site_facts import site_facts
 from server.standing import eye_heights, origin_of
-from server.web_server import WebServer
 from tracker.errors import InputError
 from tracker.log import Log
 
@@ -29,35 +24,18 @@ class Showing:
             InputError: The estimator cannot run on this log.
             PortInUse: The port is taken.
         """
-        models = site.folder / "built"
-        terrain = build_terrain(site)
-        self._console = Console(model_path=models / "occluders.glb")
+        self._session = session_name(log.name)
+        console = LocalServer.new_console(site)
         self._replay = Replay(
             log,
             settings,
             site_origin=origin_of(site),
-            ground_z_m=terrain.ground_z_m,
+            ground_z_m=build_terrain(site).ground_z_m,
             eyes_z_m=eye_heights(site),
             eye_height_m=site.eye_height_m,
-            console=self._console,
+            console=console,
         )
-        self._token = new_token()
-        self._session = session_name(log.name)
-        app = create_app(
-            web_folder=web,
-            models_folder=models,
-            site=site_facts(site, models),
-            rig_tokens=[self._token],
-            console_url=self._start_console(),
-            logs={self._session: log.path},
-        )
-        self._server = WebServer(app, "127.0.0.1", port)
-
-    def _start_console(self) -> str | None:
-        try:
-            return self._console.start()
-        except ConsoleUnavailable:
-            return None  # the walk can be watched without it
+        self._server = LocalServer(site, console, port=port, web=web, logs={self._session: log.path})
 
     @property
     def url(self) -> str:
@@ -71,7 +49,7 @@ class Showing:
 
     def __enter__(self) -> Self:
         self._server.__enter__()
-        self._replay.start(self._server.rig_url(self._session), self._token)
+        self._replay.start(self._server.rig_url(self._session), self._server.token)
         return self
 
     def check(self) -> None:
@@ -84,5 +62,4 @@ class Showing:
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
         self._replay.close()
-        self._server.close()
-        self._console.stop()
+        self._server.__exit__(kind, error, traceback)

@@ -5,7 +5,7 @@ What does not parse is left out and counted; none of it ends the reading.
 
 from bisect import bisect_left, bisect_right
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
@@ -202,14 +202,7 @@ class _Contents:
 
     def rig(self) -> Rig:
         """Return the extrinsics of `/tf_static`, and the camera."""
-        default = Rig()
-        T = {child: transform for (parent, child), transform in self._transforms.items() if parent == "base_link"}
-        return Rig(
-            T.get("imu_link", default.T_body_imu),
-            T.get("gps_link", default.T_body_gps),
-            T.get("camera_optical_frame", default.T_body_cam),
-            self._camera if self.counts["frames"] else None,
-        )
+        return rig_of(self._transforms, self._camera if self.counts["frames"] else None)
 
 
 class _Reading:
@@ -331,3 +324,15 @@ class _Reading:
 def _utc_start_ns(metadata: dict[str, dict[str, str]]) -> int | None:
     text = metadata.get(RECORDING, {}).get("utc_start_ns", "")
     return int(text) if text.isascii() and text.isdigit() and len(text) < 20 else None
+
+
+def rig_of(transforms: Mapping[tuple[str, str], Matrix], camera: CameraModel | None) -> Rig:
+    """Return the rig of `/tf_static` as `ros_messages.transforms` reads it, and its camera."""
+    default = Rig()
+    T = {child: transform for (parent, child), transform in transforms.items() if parent == "base_link"}
+    return Rig(
+        T.get("imu_link", default.T_body_imu),
+        T.get("gps_link", default.T_body_gps),
+        T.get("camera_optical_frame", default.T_body_cam),
+        camera,
+    )

@@ -26,7 +26,7 @@ from tracker.measurements import (
     Vector3,
     VisualMotion,
 )
-from tracker.rig import Rig
+from tracker.rig import CameraModel, Rig
 from tracker.video import VideoEncoder
 
 _STAMPED = "geometry_msgs/msg/TransformStamped"
@@ -104,21 +104,11 @@ class LogWriter:
             self._file.close()
 
     def _once(self, origin: Origin | None, t_ns: int) -> None:
-        rig = self._rig
-        links = (("imu_link", rig.T_body_imu), ("gps_link", rig.T_body_gps), ("camera_optical_frame", rig.T_body_cam))
-        stamped = []
-        for child, T in links:
-            translation = ros.vector((float(T[0, 3]), float(T[1, 3]), float(T[2, 3])))
-            rotation = ros.quaternion(wxyz_from_matrix(T[:3, :3]))
-            transform = ros.message("geometry_msgs/msg/Transform", translation=translation, rotation=rotation)
-            header = ros.header(t_ns, "base_link")
-            stamped.append(ros.message(_STAMPED, header=header, child_frame_id=child, transform=transform))
-        self._put("/tf_static", ros.message(ros.TF, transforms=stamped), t_ns)
+        for topic, message in rig_messages(self._rig, t_ns).items():
+            self._put(topic, message, t_ns)
         if origin is not None:
             fix = GpsFix(t_ns, t_ns, origin.lat_deg, origin.lon_deg, origin.h_ellipsoid_m, (0.0,) * 9)
             self._put("/ground_truth/origin", _fix(fix, "map"), t_ns)
-        if rig.camera is not None:
-            self._put("/camera/camera_info", self._camera_info(t_ns), t_ns)
 
     def write(self, measurement: Measurement) -> None:
         """Write one measurement.
@@ -205,29 +195,41 @@ class LogWriter:
         message = ros.message(ros.VIDEO, timestamp=stamp, frame_id="camera_optical_frame", data=data, format="h264")
         self._put("/camera/video", message, frame.t_recv_ns)
 
-    def _camera_info(self, t_ns: int) -> ros.RosMessage:
-        camera = self._rig.camera
-        if camera is None:
-            raise ValueError("no camera")
-        P = np.zeros((3, 4))
-        P[:, :3] = camera.K
-        roi = ros.message(
-            "sensor_msgs/msg/RegionOfInterest", x_offset=0, y_offset=0, height=0, width=0, do_rectify=False
-        )
-        return ros.message(
-            ros.CAMERA_INFO,
-            header=ros.header(t_ns, "camera_optical_frame"),
-            height=camera.height_px,
-            width=camera.width_px,
-            distortion_model=camera.distortion_model,
-            d=np.array(camera.distortion, float),
-            k=camera.K.ravel(),
-            r=np.eye(3).ravel(),
-            p=P.ravel(),
-            binning_x=0,
-            binning_y=0,
-            roi=roi,
-        )
+
+def rig_messages(rig: Rig, t_ns: int) -> dict[str, ros.RosMessage]:
+    """Return what a log says of its rig, once, by topic."""
+    links = (("imu_link", rig.T_body_imu), ("gps_link", rig.T_body_gps), ("camera_optical_frame", rig.T_body_cam))
+    stamped = []
+    for child, T in links:
+        translation = ros.vector((float(T[0, 3]), float(T[1, 3]), float(T[2, 3])))
+        rotation = ros.quaternion(wxyz_from_matrix(T[:3, :3]))
+        transform = ros.message("geometry_msgs/msg/Transform", translation=translation, rotation=rotation)
+        header = ros.header(t_ns, "base_link")
+        stamped.append(ros.message(_STAMPED, header=header, child_frame_id=child, transform=transform))
+    messages = {"/tf_static": ros.message(ros.TF, transforms=stamped)}
+    if rig.camera is not None:
+        messages["/camera/camera_info"] = _camera_info(rig.camera, t_ns)
+    return messages
+
+
+def _camera_info(camera: CameraModel, t_ns: int) -> ros.RosMessage:
+    P = np.zeros((3, 4))
+    P[:, :3] = camera.K
+    roi = ros.message("sensor_msgs/msg/RegionOfInterest", x_offset=0, y_offset=0, height=0, width=0, do_rectify=False)
+    return ros.message(
+        ros.CAMERA_INFO,
+        header=ros.header(t_ns, "camera_optical_frame"),
+        height=camera.height_px,
+        width=camera.width_px,
+        distortion_model=camera.distortion_model,
+        d=np.array(camera.distortion, float),
+        k=camera.K.ravel(),
+        r=np.eye(3).ravel(),
+        p=P.ravel(),
+        binning_x=0,
+        binning_y=0,
+        roi=roi,
+    )
 
 
 def _pixels(picture: Picture) -> Image:

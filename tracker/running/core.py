@@ -43,7 +43,7 @@ class WalkCore:
 
         Args:
             make_pipeline: See `MakePipeline`. Its front end, if it has one, is for the caller to run (`front_end`).
-            rig: As a log's reader would return it (`tracker.running.recorder.as_read`).
+            rig: As the recording's reader will return it (`recorder.as_read`).
             sensors: Names of the sensors, and when each was opened.
             waits_for_fix: Nothing is fed before the first fix, which then lays the site.
             correct: Applied to every measurement first: the rig's calibration.

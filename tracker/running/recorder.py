@@ -15,9 +15,10 @@ from time import monotonic
 
 import numpy as np
 
+from tracker import ros_messages as ros
 from tracker.errors import InputError, MalformedInput
-from tracker.log import RECORDING
-from tracker.log_writer import LogWriter
+from tracker.log import RECORDING, rig_of
+from tracker.log_writer import LogWriter, rig_messages
 from tracker.measurements import Frame, Measurement
 from tracker.rig import Rig
 
@@ -62,6 +63,13 @@ def recorded(rig: Rig) -> Rig:
     T_body_imu = np.eye(4)
     T_body_imu[:3, 3] = rig.T_body_imu[:3, 3]
     return replace(rig, T_body_imu=T_body_imu)
+
+
+def as_read(rig: Rig) -> Rig:
+    """Return a rig as the recording of it will be read: a rotation on its way through a quaternion changes in its last bits."""
+    messages = {topic: ros.decode(ros.encode(m), m.__msgtype__) for topic, m in rig_messages(rig, 0).items()}
+    camera = messages.get("/camera/camera_info")
+    return rig_of(ros.transforms(messages["/tf_static"]), None if camera is None else ros.camera_model(camera))
 
 
 class Recorder:

@@ -3,9 +3,12 @@
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 
+import numpy as np
+
 from tests.tracker.precise.stream import row, stream
 from tracker.assembly import assemble
 from tracker.estimator import Pose
+from tracker.geometry import exp, matrix_from_wxyz
 from tracker.measurements import (
     Frame,
     GpsFix,
@@ -19,7 +22,7 @@ from tracker.pictures import EncodedPicture
 from tracker.pipeline import Pipeline
 from tracker.rig import Rig
 from tracker.running.core import WalkCore
-from tracker.running.recorder import recorded
+from tracker.running.recorder import as_read, recorded
 from tracker.simulate import AGORA_ORIGIN, START_NS, default_rig
 
 S = 1_000_000_000
@@ -30,15 +33,18 @@ SENSORS = {"gps": START_NS, "imu": START_NS, "camera": START_NS}
 
 
 def rig() -> Rig:
-    """Return the rig of the walk, as a recording has it."""
-    return recorded(default_rig())
+    """Return the rig of the walk as it is recorded, its camera looking a little aside."""
+    rig = recorded(default_rig())
+    T_aside = np.eye(4)
+    T_aside[:3, :3] = matrix_from_wxyz(exp((0.01, 0.02, -0.03)))
+    return replace(rig, T_body_cam=T_aside @ rig.T_body_cam)
 
 
 def make(name: str) -> Callable[[GpsFix | None], Pipeline]:
     """Return what makes a pipeline that is fed what a front end made of pictures."""
 
     def pipeline(fix: GpsFix | None) -> Pipeline:
-        return assemble(name, origin=AGORA_ORIGIN, rig=rig(), date_ns=UTC_NS, looks=False)
+        return assemble(name, origin=AGORA_ORIGIN, rig=as_read(rig()), date_ns=UTC_NS, looks=False)
 
     return pipeline
 
@@ -91,7 +97,7 @@ class Noted:
 
 def new_core(name: str, record: Callable[[Measurement], None], sensors: Mapping[str, int] = SENSORS) -> WalkCore:
     """Return a core for that walk."""
-    return WalkCore(make(name), rig(), sensors, record=record)
+    return WalkCore(make(name), as_read(rig()), sensors, record=record)
 
 
 def rows_of(pipeline: Pipeline, measurements: Iterable[Measurement]) -> list[tuple[object, ...]]:

@@ -1,0 +1,258 @@
+"""A rig with live sensors: sources, tracker and recording joined to a server, or to none. The live brother of `replay`."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from time import monotonic_ns, time_ns
+from typing import Any
+
+import numpy as np
+
+from server.console import Console
+from server.messages import ControlReply, ControlRequest
+from server.placing import Placing
+from server.presenting import Presenter
+from server.push import RigLink
+from server.replay import UNCALIBRATED
+from server.standing import FAR_M, distance_m
+from tracker.assembly import assemble
+from tracker.blank import CAMERA
+from tracker.errors import MalformedInput, MissingSensor
+from tracker.estimator import Pose
+from tracker.estimators import check_name, missing_sensors
+from tracker.measurements import Frame, GpsFix, Measurement
+from tracker.pipeline import Pipeline
+from tracker.playback import Shown
+from tracker.rig import Rig, guessed_camera
+from tracker.rig_file import RigFile
+from tracker.running.core import WalkCore
+from tracker.running.health import SensorState
+from tracker.running.recorder import Recorder, as_read, recorded
+from tracker.running.walk import LiveWalk, WalkState
+from tracker.sources.source import Source
+from tracker.truth import TruthEstimator
+
+#: Health is sent when a sensor's state changes, and else this often.
+_HEALTH_NS = 1_000_000_000
+#: The best first.
+_PREFERENCE = ("camera-gps-imu/precise", "gps-imu/precise")
+
+
+@dataclass(frozen=True)
+class _Sensors:
+    """What a rig has, as `missing_sensors` asks."""
+
+    counts: dict[str, int]
+    has_truth: bool = False
+
+
+class LiveRig:
+    """One walk with live sensors; `start` starts it and `close` ends it."""
+
+    def __init__(
+        self,
+        sources: Sequence[Source],
+        rig_file: RigFile,
+        placing: Placing,
+        *,
+        estimator: str | None = None,
+        tracks: bool = True,
+        record: Path | None = None,
+        about: Mapping[str, str] | None = None,
+        console: Console | None = None,
+    ) -> None:
+        """Prepare a walk; the recording's file is opened, and nothing else runs.
+
+        Args:
+            sources: At most one each of `gps`, `imu` and `camera`.
+            rig_file: What is known of the rig.
+            placing: The site.
+            estimator: None for the best that the sensors allow.
+            tracks: Whether there is an estimator at all; a rig that only records has none.
+            record: The file to write; None for none.
+            about: What goes to the recording's head.
+            console: The operator's, if there is one.
+
+        Raises:
+            MissingSensor: No estimator can run with these sensors, or not the one that was asked for.
+            InputError: The recording cannot be written.
+        """
+        names = [source.name for source in sources]
+        self._rig_file, self._placing = rig_file, placing
+        self._recorded_rig = recorded(rig_file.rig() if "camera" in names else replace(rig_file.rig(), camera=None))
+        self._has_camera = "camera" in names
+        # what is measured by must be, to the last bit, what a replay of the recording will measure by
+        self._rig = as_read(self._recorded_rig)
+        self.estimator = _choose(estimator, names, self._rig) if tracks else ""
+        self._utc_start_ns, self._t_start_ns = time_ns(), monotonic_ns()
+        self._recorder = None if record is None else self._record(record, dict(about or {}))
+        self._first_fix: GpsFix | None = None
+        core = WalkCore(
+            self._make_pipeline,
+            self._rig,
+            dict.fromkeys(names, self._t_start_ns),
+            waits_for_fix=placing.anchor == "here" and "gps" in names,
+            correct=rig_file.correct,
+            record=self._take,
+        )
+        self._walk = LiveWalk(core, sources, show=self._show, show_pose=self._show_pose, recorder=self._recorder)
+        self._console = console
+        self._link: RigLink | None = None
+        self._presenter: Presenter | None = None
+        self._told: tuple[SensorState, ...] = ()
+        self._health_due_ns = 0
+
+    def _record(self, path: Path, about: dict[str, str]) -> Recorder:
+        about["estimator"] = self.estimator
+        return Recorder(
+            path, self._recorded_rig, t_start_ns=self._t_start_ns, utc_start_ns=self._utc_start_ns, about=about
+        )
+
+    def _make_pipeline(self, first_fix: GpsFix | None) -> Pipeline:
+        if not self.estimator:
+            return Pipeline(TruthEstimator(np.eye(4)))  # ignores everything: the recording is all that is wanted
+        pipeline = assemble(
+            self.estimator,
+            origin=self._placing.origin(first_fix),
+            rig=self._rig,
+            date_ns=self._utc_start_ns,
+            eyes_z_m=self._placing.eyes_for(self.estimator),
+        )
+        return self._placing.levelled(pipeline)
+
+    def _take(self, measurement: Measurement) -> None:
+        """Take what the estimator is fed, on fusion's thread."""
+        if self._recorder is not None:
+            self._recorder.put(measurement)
+        if self._first_fix is None and isinstance(measurement, GpsFix) and measurement.valid:
+            self._first_fix = measurement
+
+    def start(self, rig_url: str | None = None, token: str = "") -> None:
+        """Start tracking, and connecting where there is a server; the one does not wait for the other."""
+        if rig_url is not None:
+            self._link = RigLink(rig_url, token, _refuse)
+            self._link.send_state(self._description())
+        self._walk.start()
+
+    def close(self) -> None:
+        """End every thread and close the recording."""
+        self._walk.close()
+        if self._link is not None:
+            self._link.close()
+
+    @property
+    def state(self) -> WalkState:
+        """How the walk is now."""
+        return self._walk.state
+
+    @property
+    def link(self) -> RigLink | None:
+        """The link to the server, if there is one."""
+        return self._link
+
+    @property
+    def error(self) -> BaseException | None:
+        """What ended the tracker, if anything did. (A server that will not have us ends nothing.)"""
+        return self._walk.error
+
+    # -- to the server, on the thread that shows ----------------------------------------------------------------------
+
+    def _description(self) -> dict[str, object]:
+        return {
+            "kind": "live",
+            "log": None,
+            "estimator": self.estimator,
+            "estimators": [self.estimator],
+            "unavailable": {},
+            "anchor": self._placing.anchor,
+            "playback": None,
+            "notice": self._notice(None),
+            "health": {},
+        }
+
+    def _notice(self, state: WalkState | None) -> str | None:
+        """Return what a viewer should know besides the sensors' health, most important first."""
+        if state is not None and state.recorder is not None and state.recorder.warning:
+            return state.recorder.warning
+        fix, origin = self._first_fix, self._placing.site_origin
+        if self._placing.anchor == "site" and fix is not None and (away_m := distance_m(fix, origin)) > FAR_M:
+            return f"This rig is {away_m / 1000.0:,.0f} km from the site: start it with --anchor here."
+        if not self._has_camera:
+            return "This rig has no camera: the square is drawn over an empty picture."
+        if self._rig_file.camera is None:
+            return UNCALIBRATED
+        return None
+
+    def _show(self, shown: Shown) -> None:
+        self._tell_health()
+        if self._link is None:
+            return
+        presenter = self._presenter or self._make_presenter(shown.frame)
+        if presenter is not None:
+            pose = self._placing.placed(shown.pose, self.estimator)
+            position_s = max(0.0, (shown.frame.t_ns - self._t_start_ns) * 1e-9)
+            presenter.show(shown, pose, estimator=self.estimator, position_s=position_s)
+
+    def _show_pose(self, pose: Pose | None) -> None:
+        self._tell_health()
+        placed = self._placing.placed(pose, self.estimator)
+        if self._presenter is not None and placed is not None:
+            self._presenter.show_pose(placed, self.estimator)
+
+    def _make_presenter(self, first: Frame) -> Presenter | None:
+        """Return what sends pictures, once the first one has shown how large they are."""
+        assert self._link is not None
+        rig = self._rig if self._has_camera else replace(self._rig, camera=CAMERA)
+        if rig.camera is None:
+            try:
+                height_px, width_px = first.picture.gray().shape
+            except MalformedInput:
+                return None
+            rig = replace(rig, camera=guessed_camera(width_px, height_px))
+        self._presenter = Presenter(self._link, rig, self._console)
+        return self._presenter
+
+    def _tell_health(self) -> None:
+        if self._link is None:
+            return
+        state = self._walk.state
+        states = tuple(health.state for health in state.sensors.values())
+        if states == self._told and state.t_ns < self._health_due_ns:
+            return
+        self._told, self._health_due_ns = states, state.t_ns + _HEALTH_NS
+        self._link.send_state({"health": health_of(state), "notice": self._notice(state)})
+
+
+def health_of(state: WalkState) -> dict[str, Any]:
+    """Return how the sensors are, for whoever watches: no serial number, no file, nothing but what a page says."""
+    return {
+        name: {
+            "state": health.state.value,
+            "trouble": health.state.is_trouble,
+            "sentence": health.sentence,
+            "rate_hz": round(health.rate_hz, 1),
+        }
+        for name, health in state.sensors.items()
+    }
+
+
+def _choose(estimator: str | None, names: Sequence[str], rig: Rig) -> str:
+    counts = {"imu": "imu", "gps": "gps", "frames": "camera"}
+    sensors = _Sensors({count: int(name in names) for count, name in counts.items()})
+    if estimator is not None:
+        check_name(estimator)
+        candidates: tuple[str, ...] = (estimator,)
+    else:
+        candidates = _PREFERENCE
+    missing = {name: missing_sensors(name, sensors, rig) for name in candidates}
+    best = next((name for name, reason in missing.items() if reason is None), None)
+    if best is None:
+        name, reason = next(reversed(missing.items()))
+        raise MissingSensor(f"This rig cannot run {name}: it has {reason}; see --imu, --gps and --camera.")
+    return best
+
+
+def _refuse(request: ControlRequest) -> ControlReply:
+    return ControlReply(
+        request.request_id, ok=False, error="This walk is live: it cannot be paused, sought or changed."
+    )

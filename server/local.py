@@ -1,0 +1,69 @@
+"""Server and console on this machine: what replays and live walks are shown by."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from assets.site import Site
+from server.app import create_app
+from server.auth import new_token
+from server.console import Console
+from server.errors import ConsoleUnavailable
+from server.site_facts import site_facts
+from server.web_server import WebServer
+
+
+class LocalServer:
+    """A server on loopback for one rig, which `token` lets in. Use it as a context manager: leaving it frees the ports."""
+
+    def __init__(
+        self, site: Site, console: Console, *, port: int, web: Path, logs: Mapping[str, Path] | None = None
+    ) -> None:
+        """Put everything together; the console starts, and nothing else is served yet but the port is taken.
+
+        Raises:
+            PortInUse: The port is taken.
+        """
+        models = site.folder / "built"
+        self._console = console
+        self.token = new_token()
+        app = create_app(
+            web_folder=web,
+            models_folder=models,
+            site=site_facts(site, models),
+            rig_tokens=[self.token],
+            console_url=self._start_console(),
+            logs=logs,
+        )
+        self._server = WebServer(app, "127.0.0.1", port)
+
+    @staticmethod
+    def new_console(site: Site) -> Console:
+        """Return a console for a site, not started."""
+        return Console(model_path=site.folder / "built" / "occluders.glb")
+
+    def _start_console(self) -> str | None:
+        try:
+            return self._console.start()
+        except ConsoleUnavailable:
+            return None  # the walk can be watched without it
+
+    @property
+    def url(self) -> str:
+        """The address of the pages, ending in a slash."""
+        return self._server.url
+
+    def rig_url(self, session: str) -> str:
+        """Return the address for `RigLink`."""
+        return self._server.rig_url(session)
+
+    def __enter__(self) -> Self:
+        self._server.__enter__()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self._server.close()
+        self._console.stop()
