@@ -1,4 +1,4 @@
-"""`make bench-accuracy`: how accurate the trackers are, in one run; writes build/accuracy/*.json."""
+"""`make bench-accuracy`: how accurate the trackers are, in one run; writes build/accuracy/*.json and docs/accuracy.md."""
 
 import argparse
 import os
@@ -10,12 +10,13 @@ from rich.console import Console
 
 from server.settings import choose
 from tests.benchmarks.accuracy import site
+from tests.benchmarks.accuracy.document import write_document
 from tests.benchmarks.accuracy.logs import DATA, logs
 from tests.benchmarks.accuracy.scenarios import SCENARIOS
 from tests.benchmarks.accuracy.study import FOLDER, SEEDS, study
 from tests.benchmarks.accuracy.tables import print_logs, print_study
 
-STEPS = ("study", "logs")
+STEPS = ("study", "logs", "document")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -31,8 +32,16 @@ def main(arguments: Sequence[str] | None = None) -> None:
         if asked.only in (None, "logs"):
             found = logs(asked.out / "logs.json", asked.logs, asked.jobs, wanted=asked.estimators, settings=settings)
             print_logs(found, console)
+        if asked.only == "document" or (asked.only is None and _is_whole(asked)):
+            for file in write_document(asked.out / "study.json", asked.out / "logs.json"):
+                console.print(f"{file}", soft_wrap=True)
     finally:
         site.close()
+
+
+def _is_whole(asked: argparse.Namespace) -> bool:
+    """Whether a run is what the document tells of: all seeds, scenarios and entrants, and no setting changed."""
+    return asked.seeds == SEEDS and not (asked.scenarios or asked.estimators or asked.set)
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -68,13 +68,13 @@ def print_logs(found: Figures, console: Console) -> None:
         if row["failed"] is not None:
             table.add_row(row["log"], row["estimator"], "failed")
             continue
-        cells = [_cell(row.get(name), scale, form) for _, name, scale, form in LOG_COLUMNS]
+        cells = [cell(row.get(name), scale, form) for _, name, scale, form in LOG_COLUMNS]
         table.add_row(row["log"], row["estimator"], *cells)
     console.print(table)
     goals = Table("figure", "log", "estimator", "measured", "at least", "aim", "met")
     for row in found["summary"]["goals"]:
         measured = f"{row['value']:.3g} {row['unit']}"
-        marks = (_span(row["at_least"]), _span(row["aim"]), MET[row["met"]])
+        marks = (span(row["at_least"]), span(row["aim"]), MET[row["met"]])
         goals.add_row(row["goal"], row["log"], row["estimator"].removesuffix("/precise"), measured, *marks)
     console.print(goals)
     for log, estimator in found["summary"]["not_played"]:
@@ -90,10 +90,10 @@ def goals_table(goals: Sequence[Figures]) -> Table:
             row["scenario"],
             row["estimator"].removesuffix("/precise"),
             f"{row['value']:.3g} {row['unit']}",
-            _span(row["interval"]),
+            span(row["interval"]),
             f"{row['worst']:.3g}",
-            _span(row["at_least"]),
-            _span(row["aim"]),
+            span(row["at_least"]),
+            span(row["aim"]),
             MET[row["met"]],
         )
     return table
@@ -103,17 +103,19 @@ def medians_table(medians: Sequence[Figures]) -> Table:
     """Return the table of medians over seeds."""
     table = Table("scenario", "estimator", *(column[0] for column in COLUMNS), "special")
     for row in medians:
-        cells = [_cell(row.get(name), scale, form) for _, name, scale, form in COLUMNS]
-        special = " ".join(_cell(row.get(name), 1.0, "{:.2f}") for name in SPECIAL.get(row["scenario"], ()))
+        cells = [cell(row.get(name), scale, form) for _, name, scale, form in COLUMNS]
+        special = " ".join(cell(row.get(name), 1.0, "{:.2f}") for name in SPECIAL.get(row["scenario"], ()))
         table.add_row(row["scenario"], row["estimator"], *cells, special)
     return table
 
 
-def _cell(value: float | None, scale: float, form: str) -> str:
+def cell(value: float | None, scale: float, form: str) -> str:
+    """Return a figure in a column's unit; a dash where there is none."""
     return "-" if value is None else form.format(value * scale)
 
 
-def _span(value: float | Sequence[float] | None) -> str:
+def span(value: float | Sequence[float] | None) -> str:
+    """Return a limit, or a band from one to another."""
     if value is None:
         return "-"
     return f"{value:g}" if isinstance(value, float | int) else " to ".join(f"{one:.3g}" for one in value)
