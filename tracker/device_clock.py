@@ -24,13 +24,13 @@ _POINTS_FOR_DRIFT = 5
 _LARGEST_DRIFT = 200e-6
 #: What crystals drift (one sigma): the weight of a drift that has been seen for a short time among long delays.
 _USUAL_DRIFT = 50e-6
-#: A stamp this much older than the newest is not out of order: the clock was set back.
-_SET_BACK_NS = 250_000_000
-#: A stamp this much later than it can be was not made by the clock that we know: it was set forward (or all so far was late).
-_SET_FORWARD_NS = 20_000_000
-#: Delays that stay above this for `_LATE_STRETCHES` are a clock that was set back a little.
+#: A stamp this much older than the newest is not out of order, and one this much later than it can be was not made by the clock
+#: that we know: it was set (or all so far was late).
+_SET_NS = 250_000_000
+#: Delays that stay above this, and above all that were before, for some stretches are those of a clock that was set back a little.
 _LATE_NS = 50_000_000
 _LATE_STRETCHES = 3
+_ABOVE_ALL = 1.5
 
 
 @dataclass(slots=True)
@@ -45,8 +45,9 @@ class _Point:
 class DeviceClock:
     """Maps stamps of one device to the local clock, from the pairs of stamp and receipt that it is shown.
 
-    A clock that restarts, or is set forward or back by more than a quarter of a second, is noticed and followed from that stamp on;
-    one that is set back by less, within three seconds. Memory is constant; the same pairs give the same answers.
+    A clock that restarts, or is set by more than a quarter of a second, is noticed and followed from that stamp on; one that is
+    set back by less, within three seconds where delays are less than the step, else within a minute. Memory is constant; the same
+    pairs give the same answers.
     """
 
     def __init__(self) -> None:
@@ -72,7 +73,7 @@ class DeviceClock:
 
     @property
     def resets(self) -> int:
-        """How often the clock was found set anew since `reset`, or everything before a stamp late by more than such a step."""
+        """How often the clock was found set since `reset`, or everything before a stamp late by as much as that."""
         return self._resets
 
     def local_ns(self, t_device_ns: int, t_recv_ns: int) -> int:
@@ -102,8 +103,7 @@ class DeviceClock:
     def _was_set(self, t_device_ns: int, t_recv_ns: int) -> bool:
         """Whether no delay explains the stamp, so that it is of a clock that was set, or restarted, since the last."""
         assert self._last is not None
-        back = self._last[0] - t_device_ns > _SET_BACK_NS
-        return back or t_recv_ns - self._line_ns(t_device_ns) < -_SET_FORWARD_NS
+        return self._last[0] - t_device_ns > _SET_NS or self._line_ns(t_device_ns) - t_recv_ns > _SET_NS
 
     def _learn(self, t_device_ns: int, t_recv_ns: int) -> None:
         """Move the line, where the pair lies below it or begins a stretch."""
@@ -123,8 +123,9 @@ class DeviceClock:
     def _drop_what_was_before_a_small_step(self) -> None:
         """Drop older points where the latest complete stretches all lie far above the line: the clock was set back a little."""
         late = [point.offset_ns + point.t_device_ns - self._line_ns(point.t_device_ns) for point in self._points]
-        if len(late) > _LATE_STRETCHES + 1 and min(late[-_LATE_STRETCHES - 1 : -1]) > _LATE_NS:
-            for _ in range(len(late) - _LATE_STRETCHES - 1):
+        usual, latest = late[: -_LATE_STRETCHES - 1], late[-_LATE_STRETCHES - 1 : -1]
+        if len(usual) >= _POINTS_FOR_DRIFT and min(latest) > max(_LATE_NS, _ABOVE_ALL * max(usual)):
+            for _ in usual:
                 self._points.popleft()
             self._resets += 1
 

@@ -83,6 +83,17 @@ def test_offset_and_drift_are_found_within_seconds(
     assert abs(clock.offset_ns - (truth_ns - t_device_ns)) < 300_000
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_a_receiver_that_is_late_by_chance_is_mapped_as_evenly_as_its_quickest(seed: int) -> None:
+    """One epoch a second, 50 ms to 250 ms late: from the tenth on within 40 ms of the quickest, and no step is found."""
+    clock, late_ns = DeviceClock(), np.random.default_rng(seed).integers(50_000_000, 250_000_000, 120)
+    for second, delay_ns in enumerate(late_ns.tolist()):
+        t_ns = clock.local_ns(second * 10**9, 10**15 + second * 10**9 + delay_ns)
+        quickest_ns = 10**15 + second * 10**9 + 50_000_000
+        assert second < 10 or -10_000_000 < t_ns - quickest_ns < 40_000_000
+    assert clock.resets == 0
+
+
 def test_two_samples_that_arrive_in_one_packet_keep_their_distance() -> None:
     """A Phidget 1056 sends two samples of 4 ms at once; the first has waited."""
     clock, times = DeviceClock(), []

@@ -3,7 +3,8 @@
 The library calls back on threads of its own, one at a time for each channel; what a handler reads of its channel is of the event
 that it is called for, however late it is called (measured on Phidget22 1.26: handlers that sleep through ten epochs of a GPS).
 So handlers stamp what they are given, put it into a queue and do nothing else; `run` makes measurements of it on its own thread.
-When more than some hundred events wait for a slow handler, the library drops them and says so by an error event (measured).
+When more events wait for a slow handler than the library's queue holds, it drops them and says so by an error event (measured).
+A device that says nothing for half a second is taken for gone: it detaches, and attaches again as soon as it speaks (measured).
 """
 
 import logging
@@ -200,7 +201,9 @@ class PhidgetSource(ABC, Generic[Said]):
 
     def _on_detach(self, channel: Any) -> None:
         self._count("detached")
-        self._detail = f"{self._device or self._title()} was pulled out: put it back, it goes on by itself."
+        self._detail = (
+            f"{self._device or self._title()} was pulled out or fell silent: put it back, it goes on by itself."
+        )
         self._device = None
 
     def _on_error(self, channel: Any, code: int, description: str) -> None:

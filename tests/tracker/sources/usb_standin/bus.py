@@ -50,6 +50,8 @@ class Bus:
         number = int(self._library.standin_add(*kind, str(serial).encode()))
         if number < 0:
             raise ValueError("the stand-in has no room for more devices")
+        if kind == SPATIAL_1056:
+            self.answer(number, CALIBRATION_1056_ASKED, calibration_1056())
         self.plug(number, True)
         return number
 
@@ -64,6 +66,10 @@ class Bus:
     def waiting(self, number: int) -> int:
         """Return how many reports the library has not fetched."""
         return int(self._library.standin_waiting(number))
+
+    def listened_to(self, number: int) -> bool:
+        """Return whether the library has opened a device and waits for its reports."""
+        return bool(self._library.standin_listened_to(number))
 
     def answer(self, number: int, first_byte: int, report: bytes) -> None:
         """Let a device answer each report to it that begins with `first_byte`."""

@@ -75,7 +75,6 @@ struct device {
     int first, count;
     unsigned char answer[REPORT_BYTES];
     int answer_to; /* the first byte of the OUT report that is answered, or -1 */
-    int out_reports;
 };
 
 static struct device devices[DEVICES];
@@ -140,12 +139,14 @@ int standin_waiting(int number) {
     return count;
 }
 
-/* Returns how many OUT reports a device was sent. */
-int standin_told(int number) {
+/* Returns whether the library has opened a device and waits for its reports. */
+int standin_listened_to(int number) {
+    int found = 0;
     pthread_mutex_lock(&lock);
-    int count = devices[number].out_reports;
+    for (int i = 0; i < pending_count; i++)
+        found |= pending[i]->handle == &devices[number];
     pthread_mutex_unlock(&lock);
-    return count;
+    return found;
 }
 
 /* Lets a device answer every OUT report that begins with a byte. */
@@ -160,7 +161,6 @@ static int take_out_report(struct device *device, const unsigned char *report, i
     pthread_mutex_lock(&lock);
     int plugged = device->plugged;
     int answers = plugged && length > 0 && report[0] == device->answer_to;
-    device->out_reports += plugged;
     pthread_mutex_unlock(&lock);
     if (answers)
         standin_push(device - devices, device->answer, REPORT_BYTES);
