@@ -19,47 +19,41 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 
 from assets.errors import AssetError
 from assets.site import Site, load_site
+from server import live_commands, options
 from server.errors import ServerError
+from server.options import (
+    WEB,
+    Anchor,
+    Browser,
+    EstimatorName,
+    Eyes,
+    Height,
+    LookAgain,
+    Port,
+    SiteFolder,
+    require_built,
+    site_with,
+)
 from tracker.errors import InputError
-from tracker.estimators import ESTIMATORS, check_name
+from tracker.estimators import check_name
 from tracker.fuzzy import INDICES, LEVELS, NEXT_INDEX, rules_by_name
 
-ROOT = Path(__file__).parents[1]
-SITE = ROOT / "assets" / "state_agora"
-DEMO_LOG = ROOT / "assets" / "demo" / "state-agora-walk.mcap"
-WEB = ROOT / "web" / "dist"
+SITE = options.SITE
+DEMO_LOG = options.ROOT / "assets" / "demo" / "state-agora-walk.mcap"
 
 app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
-    help="Outdoor augmented reality for heritage sites: replay a walk, measure a tracker, simulate, build a site's models.",
+    help="Outdoor augmented reality for heritage sites: walk, replay a walk, measure a tracker, simulate, build a site's models.",
 )
+app.command()(live_commands.walk)
+app.command()(live_commands.track)
+app.command()(live_commands.record)
 out = Console(highlight=False)
 err = Console(stderr=True, highlight=False)
 
 LogFile = Annotated[Path, typer.Argument(help="A walk: a ROS 2 bag in one MCAP file.", metavar="LOG")]
-_MODELS = ", ".join(dict.fromkeys(name.rpartition("/")[2] for name in ESTIMATORS if "/" in name))
-EstimatorName = Annotated[
-    str | None,
-    typer.Option("--estimator", help=f"gps-imu/MODEL or camera-gps-imu/MODEL, MODEL one of {_MODELS}; or truth."),
-]
-Anchor = Annotated[
-    Literal["site", "here"],
-    typer.Option(help="`here` lays the site's origin at the walk's first fix: any recording then shows the square."),
-]
-Height = Annotated[
-    Literal["ground", "gps"], typer.Option(help="Where the eyes are: on the ground's model, or where the GPS says.")
-]
-Eyes = Annotated[
-    float | None,
-    typer.Option(
-        "--eye-height", min=0.5, max=2.5, help="Of the rig above the ground, metres.", show_default="the site's own"
-    ),
-]
-Port = Annotated[int, typer.Option(min=0, max=65535, help="Port on this machine; 0 takes a free one.")]
-Browser = Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page.")]
-SiteFolder = Annotated[Path, typer.Option("--site", help="The folder of the site.", show_default="the State Agora")]
 
 
 @app.command()
@@ -73,7 +67,7 @@ def demo(
     site: SiteFolder = SITE,
 ) -> None:
     """Play the recorded walk that comes with Agora as AR in a browser, again and again; ctrl-C ends it."""
-    _show(DEMO_LOG, estimator, anchor, height, port, browser, _site(site, eyes), looping=True)
+    _show(DEMO_LOG, estimator, anchor, height, port, browser, site_with(site, eyes), looping=True)
 
 
 @app.command()
@@ -86,10 +80,11 @@ def replay(
     port: Port = 8470,
     browser: Browser = True,
     loop: Annotated[bool, typer.Option("--loop", help="Begin again at the end.")] = False,
+    look_again: LookAgain = False,
     site: SiteFolder = SITE,
 ) -> None:
     """Play a recorded walk as AR in a browser; ctrl-C ends it."""
-    _show(log, estimator, anchor, height, port, browser, _site(site, eyes), looping=loop)
+    _show(log, estimator, anchor, height, port, browser, site_with(site, eyes), looping=loop, look_again=look_again)
 
 
 def _show(
@@ -102,6 +97,7 @@ def _show(
     site: Site,
     *,
     looping: bool,
+    look_again: bool = False,
 ) -> None:
     # imported here, so that `agora rules` need not wait for a web server
     from server.replay import ReplaySettings
@@ -111,8 +107,8 @@ def _show(
     if estimator is not None:
         check_name(estimator)
     log = Log.open(path)
-    settings = ReplaySettings(estimator, anchor, height, looping)
-    _require_built(site)
+    settings = ReplaySettings(estimator, anchor, height, looping, look_again)
+    require_built(site)
     stop = Event()
     for number in (SIGINT, SIGTERM):
         signal(number, lambda *_: stop.set())
@@ -123,12 +119,6 @@ def _show(
             webbrowser.open(showing.page)
         while not stop.wait(0.2):
             showing.check()
-
-
-def _require_built(site: Site) -> None:
-    if not (WEB / "index.html").is_file() or not any((site.folder / "built").glob("*.glb")):
-        err.print("agora: the pages or the models are not built yet: run `make setup` (or `make demo`).")
-        raise typer.Exit(3)
 
 
 @app.command()
@@ -167,7 +157,7 @@ def evaluate(
     from server.plots.trace import Trace, trace_of
     from server.settings import choose
 
-    settings, place = choose(change or ()), _site(site, eyes)
+    settings, place = choose(change or ()), site_with(site, eyes)
     traces: list[Trace] = []
     cv2.setNumThreads(1)  # a rig has other work for its cores, and figures should not depend on how many there are
     with _progress("evaluating") as bar:
@@ -292,11 +282,6 @@ def settings() -> None:
         out.print(f"[bold]{setting.key}[/bold] = [cyan]{escape(setting.text)}[/cyan]")
         out.print(Padding(setting.meaning, (0, 0, 1, 4)), markup=False)
     out.print("The end of a name is enough: agora evaluate LOG --set m_P=literal_enu", style="dim")
-
-
-def _site(folder: Path, eye_height_m: float | None) -> Site:
-    site = load_site(folder)
-    return site if eye_height_m is None else replace(site, eye_height_m=eye_height_m)
 
 
 @contextmanager

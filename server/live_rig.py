@@ -1,6 +1,6 @@
 """A rig with live sensors: sources, tracker and recording joined to a server, or to none. The live brother of `replay`."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from time import monotonic_ns, time_ns
@@ -24,7 +24,6 @@ from tracker.measurements import Frame, GpsFix, Measurement
 from tracker.pipeline import Pipeline
 from tracker.playback import Shown
 from tracker.rig import Rig, guessed_camera
-from tracker.rig_file import RigFile
 from tracker.running.core import WalkCore
 from tracker.running.health import SensorState
 from tracker.running.recorder import Recorder, as_read, recorded
@@ -52,9 +51,10 @@ class LiveRig:
     def __init__(
         self,
         sources: Sequence[Source],
-        rig_file: RigFile,
+        rig: Rig,
         placing: Placing,
         *,
+        correct: Callable[[Measurement], Measurement] = lambda measurement: measurement,
         estimator: str | None = None,
         tracks: bool = True,
         record: Path | None = None,
@@ -65,8 +65,9 @@ class LiveRig:
 
         Args:
             sources: At most one each of `gps`, `imu` and `camera`.
-            rig_file: What is known of the rig.
+            rig: Where its sensors sit, and its camera's lens, where it is known.
             placing: The site.
+            correct: What a calibration makes of a measurement.
             estimator: None for the best that the sensors allow.
             tracks: Whether there is an estimator at all; a rig that only records has none.
             record: The file to write; None for none.
@@ -78,9 +79,9 @@ class LiveRig:
             InputError: The recording cannot be written.
         """
         names = [source.name for source in sources]
-        self._rig_file, self._placing = rig_file, placing
-        self._recorded_rig = recorded(rig_file.rig() if "camera" in names else replace(rig_file.rig(), camera=None))
+        self._placing = placing
         self._has_camera = "camera" in names
+        self._recorded_rig = recorded(rig if self._has_camera else replace(rig, camera=None))
         # what is measured by must be, to the last bit, what a replay of the recording will measure by
         self._rig = as_read(self._recorded_rig)
         self.estimator = _choose(estimator, names, self._rig) if tracks else ""
@@ -92,7 +93,7 @@ class LiveRig:
             self._rig,
             dict.fromkeys(names, self._t_start_ns),
             waits_for_fix=placing.anchor == "here" and "gps" in names,
-            correct=rig_file.correct,
+            correct=correct,
             record=self._take,
         )
         self._walk = LiveWalk(core, sources, show=self._show, show_pose=self._show_pose, recorder=self._recorder)
@@ -179,7 +180,7 @@ class LiveRig:
             return f"This rig is {away_m / 1000.0:,.0f} km from the site: start it with --anchor here."
         if not self._has_camera:
             return "This rig has no camera: the square is drawn over an empty picture."
-        if self._rig_file.camera is None:
+        if self._rig.camera is None:
             return UNCALIBRATED
         return None
 

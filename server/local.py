@@ -62,8 +62,12 @@ class LocalServer:
         self._server.__enter__()
         return self
 
+    def close(self) -> None:
+        """Free the ports, whether it was entered or not."""
+        self._server.close()
+        self._console.stop()
+
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
-        self._server.close()
-        self._console.stop()
+        self.close()

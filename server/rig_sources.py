@@ -5,6 +5,7 @@ from pathlib import Path
 
 from tracker.errors import InputError
 from tracker.log import Log
+from tracker.rig import Rig
 from tracker.rig_file import RigFile
 from tracker.sources.played import Played
 from tracker.sources.source import Source
@@ -30,6 +31,12 @@ class RigSources:
         """
         makers = (("gps", gps, self._gps), ("imu", imu, self._imu), ("camera", camera, self._camera))
         return [self._source(sensor, spec, maker) for sensor, spec, maker in makers if spec != "none"]
+
+    def rig(self) -> Rig:
+        """Return the rig: the file's, or a recording's own where one is played and nothing was calibrated here."""
+        if self._rig_file != RigFile() or not self._played:
+            return self._rig_file.rig()
+        return next(iter(self._played.values())).log.rig
 
     def _source(self, sensor: str, spec: str, maker: Callable[[str], Source]) -> Source:
         return self._recorded(spec).source(sensor) if spec.startswith(_LOG) else maker(spec)
