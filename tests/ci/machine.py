@@ -1,4 +1,4 @@
-"""What the tests need from the machine: a Chromium, OpenGL on EGL and a font, found or, by root, installed.
+"""What the tests need from the machine: a Chromium, OpenGL on EGL, a font and gpsd, found or, by root, installed.
 
 `make test` runs this file before pytest. It says nothing and takes under two seconds where everything is there.
 """
@@ -14,6 +14,7 @@ from rich.console import Console
 BROWSER_NAMES = ("chromium", "chromium-browser", "google-chrome-stable", "google-chrome", "chrome")
 GL_PACKAGES = ("libegl1", "libgl1", "libgl1-mesa-dri")
 FONT_PACKAGES = ("fonts-dejavu-core", "fontconfig")
+GPSD_PACKAGES = ("gpsd", "gpsd-clients", "python3-gps")
 DOWNLOAD_TIMEOUT_S = 150.0
 """Chromium is 170 MB: over a link slower than 10 Mbit/s the distribution's package is no slower."""
 INSTALL_TIMEOUT_S = 400.0
@@ -61,6 +62,13 @@ def has_font() -> bool:
     """Return whether any outline font is installed: without one, Chromium draws no text, or none at all."""
     folders = (Path("/usr/share/fonts"), Path("/usr/local/share/fonts"), Path.home() / ".local/share/fonts")
     return any(path.suffix in {".ttf", ".otf", ".ttc", ".pfb"} for folder in folders for path in folder.rglob("*"))
+
+
+def has_gpsd() -> bool:
+    """Return whether gpsd is there and `gpsfake`, which plays logs to it, starts."""
+    return shutil.which("gpsd", path=f"{os.environ.get('PATH', '')}:/usr/sbin:/sbin") is not None and succeeds(
+        "gpsfake", "--version"
+    )
 
 
 def is_root() -> bool:
@@ -114,6 +122,14 @@ def get_font(say: Console) -> bool:
     return install(*FONT_PACKAGES) and has_font()
 
 
+def get_gpsd(say: Console) -> bool:
+    """Make sure of gpsd."""
+    if has_gpsd():
+        return True
+    say.print("agora: installing gpsd for the tests")
+    return install(*GPSD_PACKAGES) and has_gpsd()
+
+
 def main() -> int:
     """Get what is missing; return 3 where root could not, and 0 otherwise: then the tests in question are skipped as "not root"."""
     say = Console(stderr=True, highlight=False, soft_wrap=True)
@@ -121,6 +137,7 @@ def main() -> int:
         (get_open_gl(say), "off-screen OpenGL", GL_PACKAGES),
         (get_font(say), "a font", FONT_PACKAGES),
         (get_browser(say), "a browser", ("chromium",)),
+        (get_gpsd(say), "gpsd", GPSD_PACKAGES),
     )
     missing = [(what, packages) for there, what, packages in needs if not there]
     for what, packages in missing:

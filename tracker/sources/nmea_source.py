@@ -63,18 +63,19 @@ class NmeaSource:
     def run(self, put: Put, stop: Event) -> None:
         """Read until `stop`; see `Source`."""
         reader = NmeaReader(self._counts, geoid_separation_m=self._geoid_separation_m)
+        detail = f"{self._stream.detail} was closed"
         try:
             self._stream.open(stop)
+            self._say(True, self._stream.detail, reader)
             self._read(reader, put, stop)
         except (SourceLost, InputError) as error:
-            self._say(False, str(error), reader)
+            detail = str(error)
             raise
-        else:
-            self._say(False, f"{self._stream.detail} was closed", reader)
         finally:
             self._stream.close()
             for measurement in reader.close(monotonic_ns()):
                 put(measurement)
+            self._say(False, detail, reader)
 
     def status(self) -> SourceStatus:
         """Return how it is now: satellites, fix and what became of the sentences."""

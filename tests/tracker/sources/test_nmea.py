@@ -1,7 +1,5 @@
 """NMEA receivers: what they say becomes fixes and velocities, in any pieces, and everything else is counted."""
 
-import re
-from collections import Counter
 from dataclasses import replace
 from itertools import pairwise
 from math import degrees, sqrt
@@ -12,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.tracker.sources.nmea_count import count, places_deg
 from tests.tracker.sources.receivers import MS, SECOND, STYLES, Moment, burst, sentence, walk
 from tracker.measurements import GpsFix, GpsVelocity
 from tracker.sources.nmea import NmeaReader
@@ -244,29 +243,13 @@ def test_any_bytes_in_any_pieces(pieces: list[bytes], cuts: list[int], byte_by_b
         assert m.t_ns <= m.t_recv_ns
 
 
-def by_hand(data: bytes) -> Counter[str]:
-    """Count a log by a few lines that share nothing with the reader: positions by GGA, and lines by their checksums."""
-    found: Counter[str] = Counter()
-    for line in re.findall(rb"\$[^$\r\n]*", data):
-        body, _, stated = line[1:].partition(b"*")
-        value = 0
-        for byte in body:
-            value ^= byte
-        if stated[:2].upper() != f"{value:02X}".encode():
-            found["corrupt"] += 1
-        elif body[2:5] == b"GGA":
-            found["valid" if body.split(b",")[6] != b"0" else "invalid"] += 1
-    return found
-
-
 def test_real_receivers(shared: Path) -> None:
     """Every valid position of seven receivers arrives, with a velocity, and every corrupt line is counted."""
     for path in sorted((shared / "data/nmea").glob("*.log")):
         data = b"".join(line for line in path.read_bytes().splitlines(True) if not line.startswith(b"#"))
-        expected = by_hand(data)
+        expected = count(data)
         fixes, velocities, reader = read(data)
-        assert sum(fix.valid for fix in fixes) == len(velocities) == expected["valid"], path.name
-        assert sum(reader.counts[reason] for reason in ("cut", "checksum", "too_long")) == expected["corrupt"], (
-            path.name
-        )
+        np.testing.assert_allclose(places_deg(fixes), expected.places_deg, rtol=0.0, atol=1e-10, err_msg=path.name)
+        assert len(velocities) == len(expected.places_deg), path.name
+        assert sum(reader.counts[reason] for reason in ("cut", "checksum", "too_long")) == expected.corrupt, path.name
         assert reader.counts["unreadable"] == 0, path.name
