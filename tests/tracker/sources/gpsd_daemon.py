@@ -48,12 +48,15 @@ def playing(log: Path) -> Iterator[int]:
         _wait_for(port)
         yield port
     finally:
-        os.killpg(process.pid, signal.SIGTERM)  # gpsfake and the daemon, which then take their socket away
+        children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text(encoding="ascii").split()
+        os.killpg(process.pid, signal.SIGTERM)
         try:
             process.wait(5.0)
         finally:
             with suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
+            for child in children:  # gpsfake leaves its socket behind
+                Path(f"/tmp/gpsfake-{child}.sock").unlink(missing_ok=True)
 
 
 def _wait_for(port: int) -> None:
