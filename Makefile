@@ -46,7 +46,7 @@ NO_INDEX = the package index gave no answer, or no: check the network and the se
 NO_REGISTRY = the web packages were not installed: check the network and the settings of npm (registry, proxy, certificate).
 CHECKING = checking format, lint and types
 
-.PHONY: help setup demo build test check bench bench-accuracy paper gallery lock clean FORCE
+.PHONY: help setup demo build test check bench bench-accuracy paper gallery fuzz lock clean FORCE
 
 help: ## list the commands
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 21
@@ -85,6 +85,9 @@ paper: setup $(BIN)/.dev ## measure all of the paper and write docs/paper.md ane
 
 gallery: setup $(BIN)/.dev ## draw docs/gallery.md and the golden pictures of the tests anew, in a browser
 	@$(BIN)/python -m tests.web.gallery
+
+fuzz: $(BIN)/.dev ## fuzz the readers of NMEA and of logs; ARGS="nmea --runs 1000000" for one of them, longer
+	@$(BIN)/python -m tests.fuzz $(ARGS)
 
 lock: | $(UV) ## renew the lock files from pyproject.toml; ARGS="--upgrade" takes newer releases
 	$(UV_PIP) compile --quiet --universal --generate-hashes --python-version 3.11 $(ARGS) -o requirements.lock pyproject.toml

@@ -24,6 +24,7 @@ class NmeaLines:
         self._body: bytearray | None = None
         self._t_ns = 0
         self._is_noisy = False
+        self._is_passed_over = False
 
     def feed(self, data: bytes, t_ns: int) -> Iterator[tuple[str, int]]:
         """Yield what stands between `$` and `*` in each sentence that ends here, and the `t_ns` of where it began."""
@@ -39,7 +40,7 @@ class NmeaLines:
         """End the line: the stream may end without a line's end."""
         if self._is_noisy:
             self._counts["noise"] += 1
-            self._is_noisy = False
+        self._is_noisy = self._is_passed_over = False
         if self._body is not None:
             content = self._checked(bytes(self._body))
             self._body = None
@@ -48,12 +49,12 @@ class NmeaLines:
 
     def _extend(self, part: bytes) -> None:
         if self._body is None:
-            self._is_noisy = self._is_noisy or not part.isspace()
+            self._is_noisy = self._is_noisy or not (self._is_passed_over or part.isspace())
             return
         self._body += part
         if len(self._body) > _LONGEST:
             self._counts["too_long"] += 1
-            self._body = None
+            self._body, self._is_passed_over = None, True
 
     def _checked(self, body: bytes) -> str | None:
         whole = _SENTENCE.fullmatch(body)

@@ -13,7 +13,8 @@ SECOND = 1000 * MS
 
 def sentence(content: str, end: bytes = b"\r\n") -> bytes:
     """Return a whole sentence."""
-    return f"${content}*{reduce(xor, content.encode(), 0):02X}".encode() + end
+    data = content.encode("latin-1")
+    return b"$%s*%02X%s" % (data, reduce(xor, data, 0), end)
 
 
 @dataclass(frozen=True)

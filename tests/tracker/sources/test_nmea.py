@@ -205,7 +205,7 @@ def test_every_corrupt_sentence_is_counted() -> None:
 
 _PIECES = st.one_of(
     st.binary(max_size=40),
-    st.sampled_from([b"$", b"\r\n", b"*", b"$GPGGA,", b"$$"]),
+    st.sampled_from([b"$", b"\r\n", b"*", b"$GPGGA,", b"$$", b"$" + b"A" * 600]),
     st.builds(
         lambda style, s, quality: burst(style, Moment(s, quality=quality)),
         st.sampled_from(list(STYLES)),
