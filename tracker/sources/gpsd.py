@@ -1,10 +1,10 @@
 """A receiver that a running gpsd has: its TCP protocol, of which the NMEA sentences are read.
 
-gpsd offers what a receiver says (`nmea`) and its own view of it (TPV and SKY as JSON). The sentences lose least: each is handed
-on when it is here, where TPV waits for what gpsd takes for an epoch's end, and quality, dilutions and deviations come with the
-position that they are of. For receivers that speak a binary protocol gpsd writes GGA, RMC, GSA and GSV itself; their own error
-estimates are then lost, and dilution counts. JSON is watched too, because it alone tells of receivers that come and go.
-Sentences with a wrong checksum are refused by gpsd and never seen here.
+gpsd offers what a receiver says (`nmea`) and its own view of it (TPV and SKY as JSON). Of a receiver that speaks NMEA, the
+sentences lose least: each is handed on when it is here, where TPV waits for what gpsd takes for an epoch's end, and quality,
+dilutions and deviations come with the position that they are of. Of one that speaks a binary protocol, TPV does: see `gpsd_tpv`.
+gpsd says which it is (`native`), and in JSON alone that receivers come and go. Sentences with a wrong checksum are refused by gpsd
+and never seen.
 
 Reference:
     gpsd_json(5): https://gpsd.gitlab.io/gpsd/gpsd_json.html
@@ -17,13 +17,15 @@ from time import monotonic_ns
 from typing import Any
 
 from tracker.errors import InputError, SourceLost
+from tracker.sources.gpsd_tpv import sentences
 
 DEFAULT_HOST, DEFAULT_PORT = "localhost", 2947
 _WATCH = b'?WATCH={"enable":true,"json":true,"nmea":true};\n'
 _CONNECT_S, _WAIT_S = 5.0, 0.1
 #: Longer than any line that gpsd writes (GPS_JSON_RESPONSE_MAX).
 _LONGEST_LINE = 1 << 16
-_NOTICES = (b'{"class":"VERSION"', b'{"class":"DEVICE"', b'{"class":"DEVICES"', b'{"class":"ERROR"')
+#: What gpsd's own sentences for a binary receiver are good for: the satellites.
+_SATELLITES = (b"GSA", b"GSV")
 
 
 class GpsdStream:
@@ -35,6 +37,8 @@ class GpsdStream:
         self._socket: socket.socket | None = None
         self._line = b""
         self._devices: dict[str, str] = {}
+        self._native: set[str] = set()
+        self._sky: dict[str, Any] = {}
         self._is_gpsd = False
 
     @classmethod
@@ -70,7 +74,7 @@ class GpsdStream:
 
     def open(self, stop: Event) -> None:
         """Connect, and ask for sentences."""
-        self._line, self._devices, self._is_gpsd = b"", {}, False
+        self._line, self._devices, self._native, self._sky, self._is_gpsd = b"", {}, set(), {}, False
         try:
             self._socket = socket.create_connection((self._host, self._port), _CONNECT_S)
             self._socket.sendall(_WATCH)
@@ -106,37 +110,46 @@ class GpsdStream:
         *lines, self._line = (self._line + data).split(b"\n")
         kept = []
         for line in lines:
-            if not line.startswith(b"{"):
+            if line.startswith(b"{"):
+                kept.append(self._take_notice(line))
+            elif not self._native or line[3:6] in _SATELLITES:
                 kept.append(line + b"\n")
-            elif line.startswith(_NOTICES):
-                self._take_notice(line)
-        if len(self._line) > _LONGEST_LINE or (kept and not self._is_gpsd):
+        found = b"".join(kept)
+        if len(self._line) > _LONGEST_LINE or (found and not self._is_gpsd):
             raise SourceLost(f"What answers at {self._host}:{self._port} is no gpsd: check host and port.")
-        return b"".join(kept)
+        return found
 
-    def _take_notice(self, line: bytes) -> None:
-        """Learn which receivers there are."""
+    def _take_notice(self, line: bytes) -> bytes:
+        """Learn which receivers there are; return what a binary one has said as sentences."""
         try:
             notice = json.loads(line)
         except (ValueError, RecursionError):
-            return
+            return b""
         match notice:
             case {"class": "VERSION"}:
                 self._is_gpsd = True
             case {"class": "DEVICES", "devices": list(devices)}:
-                self._devices = {}
+                self._devices, self._native = {}, set()
                 for device in devices:
                     self._take_device(device)
             case {"class": "DEVICE"}:
                 self._take_device(notice)
+            case {"class": "SKY"}:
+                self._sky = notice
+            case {"class": "TPV"} if self._native:
+                return sentences(notice, self._sky)
             case _:
                 pass
+        return b""
 
     def _take_device(self, device: Any) -> None:
         """Note a receiver that came, or forget one that went: gpsd says that it was activated at no time."""
         if not isinstance(device, dict) or not isinstance(device.get("path"), str):
             return
-        if device.get("activated") == 0:
-            self._devices.pop(device["path"], None)
-        else:
-            self._devices[device["path"]] = str(device.get("driver") or "")[:40]
+        path = device["path"]
+        self._devices.pop(path, None)
+        self._native.discard(path)
+        if device.get("activated") != 0:
+            self._devices[path] = str(device.get("driver") or "")[:40]
+            if device.get("native") == 1:
+                self._native.add(path)

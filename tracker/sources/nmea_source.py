@@ -63,11 +63,12 @@ class NmeaSource:
     def run(self, put: Put, stop: Event) -> None:
         """Read until `stop`; see `Source`."""
         reader = NmeaReader(self._counts, geoid_separation_m=self._geoid_separation_m)
-        detail = f"{self._stream.detail} was closed"
+        detail = ""
         try:
             self._stream.open(stop)
             self._say(True, self._stream.detail, reader)
             self._read(reader, put, stop)
+            detail = f"{self._stream.detail}, closed"
         except (SourceLost, InputError) as error:
             detail = str(error)
             raise

@@ -1,5 +1,6 @@
 """NMEA receivers of our own making: the same walk, said in the ways in which receivers differ."""
 
+import struct
 from dataclasses import dataclass
 from functools import reduce
 from math import degrees
@@ -112,3 +113,30 @@ def walk(seconds: int, start_s: float = 43_200.0) -> list[Moment]:
         Moment(start_s + i, 37.9366 + i * lat_step, 27.3447 + i * lon_step, h_msl_m=48.0 + 0.01 * i)
         for i in range(seconds)
     ]
+
+
+def ubx(moment: Moment, sigma_h_m: float = 1.5, sigma_up_m: float = 2.5) -> bytes:
+    """Return a moment in u-blox's binary protocol: NAV-PVT, NAV-DOP and NAV-EOE (u-blox M8 receiver description, UBX-13003221)."""
+    itow_ms = round((5 * 86_400 + moment.utc_s + 18.0) * 1000)  # a Friday; GPS time is 18 s ahead
+    hours, rest = divmod(round(moment.utc_s), 3600)
+    height_mm = round(1000 * ((moment.h_msl_m or 0.0) + (moment.separation_m or 0.0)))
+    place = (round(moment.lon_deg * 1e7), round(moment.lat_deg * 1e7), height_mm, round(1000 * (moment.h_msl_m or 0.0)))
+    speed_mm_s, heading = round(1000 * moment.speed_m_s), np.radians(moment.heading_deg or 0.0)
+    v_ned_mm_s = (round(speed_mm_s * float(np.cos(heading))), round(speed_mm_s * float(np.sin(heading))), 0)
+    pvt = struct.pack(
+        "<IHBBBBBBIiBBBB4iII3iiiIIH14x",
+        *(itow_ms, 2026, 8, 28, hours, rest // 60, rest % 60, 0x37, 20, 0, 3, 1, 0xE0, 9),
+        *(*place, round(1000 * sigma_h_m), round(1000 * sigma_up_m), *v_ned_mm_s, speed_mm_s),
+        *(round(1e5 * (moment.heading_deg or 0.0)), 100, 100_000, 120),
+    )
+    dop = struct.pack("<I7H", itow_ms, 200, 180, 90, 160, round(100 * moment.hdop), 70, 60)
+    return _ubx_frame(0x07, pvt) + _ubx_frame(0x04, dop) + _ubx_frame(0x61, struct.pack("<I", itow_ms))
+
+
+def _ubx_frame(message: int, payload: bytes) -> bytes:
+    body = bytes((0x01, message)) + struct.pack("<H", len(payload)) + payload
+    a = b = 0
+    for byte in body:
+        a = (a + byte) & 0xFF
+        b = (b + a) & 0xFF
+    return b"\xb5\x62" + body + bytes((a, b))

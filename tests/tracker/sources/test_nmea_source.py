@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from tests.tracker.sources.gpsd_daemon import free_port, need_gpsd, playing
 from tests.tracker.sources.listening import Listening
 from tests.tracker.sources.nmea_count import count, is_passed, places_deg
-from tests.tracker.sources.receivers import STYLES, Moment, burst, walk
+from tests.tracker.sources.receivers import STYLES, Moment, burst, ubx, walk
 from tracker.errors import InputError, SourceLost
 from tracker.sources.nmea_source import nmea_source
 from tracker.sources.serial_port import SerialStream
@@ -226,6 +226,23 @@ def test_gpsd_hands_on_every_fix(tmp_path: Path, style: str) -> None:
     log = tmp_path / "receiver.log"
     log.write_bytes(corrupted(style))
     check_gpsd(log)
+
+
+def test_gpsd_hands_on_a_binary_receivers_own_view(tmp_path: Path) -> None:
+    """To 1e-7 degrees, with the receiver's own height above the ellipsoid, errors and velocity."""
+    need_gpsd()
+    log, moments = tmp_path / "receiver.ubx", walk(40)
+    log.write_bytes(b"".join(ubx(moment) for moment in moments))
+    with playing(log) as port, Listening(nmea_source(f"gpsd:127.0.0.1:{port}")) as heard:
+        heard.wait(lambda: len(heard.fixes) > 100)
+    expected = np.array([(moment.lat_deg, moment.lon_deg) for moment in moments])
+    away_deg = np.abs(places_deg(heard.found)[:, None] - expected).max(axis=2)
+    assert away_deg.min(axis=1).max() < 1e-7
+    assert set(away_deg.argmin(axis=1)) == set(range(40))
+    fix, velocity = heard.fixes[-1], heard.velocities[-1]
+    assert fix.h_ellipsoid_m == pytest.approx(86.7, abs=0.3)
+    assert fix.cov_enu_m2[::4] == pytest.approx((1.125, 1.125, 6.25), rel=1e-3)
+    assert velocity.v_enu_m_s == pytest.approx((0.99, 0.99, 0.0), abs=0.01)
 
 
 @pytest.mark.slow
