@@ -16,7 +16,15 @@ with atheris.instrument_imports(include=["tracker", "pynmeagps", "mcap"]):
     from tests.fuzz.seeds import seeds
     from tests.fuzz.targets import TARGETS
 
-_LONGEST = {"nmea": 2_000, "sentences": 2_000, "message": 4_000, "log": 20_000, "container": 20_000, "salvage": 20_000}
+_LONGEST = {
+    "nmea": 2_000,
+    "sentences": 2_000,
+    "gpsd": 2_000,
+    "message": 4_000,
+    "log": 20_000,
+    "container": 20_000,
+    "salvage": 20_000,
+}
 """Bytes: some more than the seeds are."""
 _TIMEOUT_S = 60
 """For one input: a reader that hangs has broken a law too."""

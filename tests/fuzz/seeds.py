@@ -28,6 +28,13 @@ from tracker.rig import CameraModel, Rig
 
 _T_NS = 1_000_000_000_000
 _CAMERA = CameraModel(32, 24, 30.0, 30.0, 15.5, 11.5, "plumb_bob", (-0.1, 0.01, 0.0, 0.0, 0.0))
+_GPSD = b"""{"class":"VERSION","release":"3.25","proto_major":3,"proto_minor":15}\r
+{"class":"DEVICES","devices":[{"class":"DEVICE","path":"/dev/ttyACM0","native":0,"driver":"u-blox"}]}\r
+{"class":"SKY","hdop":0.9,"uSat":11}\r
+{"class":"TPV","mode":3,"status":2,"time":"2026-08-28T12:00:59.950Z","lat":37.9,"lon":-27.3,"altHAE":86.5,\
+"geoidSep":29.0,"eph":1.5,"epv":2.5,"speed":1.4,"track":90.0}\r
+{"class":"DEVICE","path":"/dev/ttyUSB0","activated":0}\r
+"""
 
 
 def seeds(target: str) -> list[bytes]:
@@ -37,6 +44,11 @@ def seeds(target: str) -> list[bytes]:
             return [*(burst(style, Moment(5.0)) for style in STYLES), *_odd_sentences()]
         case "sentences":
             return [b"\n".join(line[1:-3] for line in seed.splitlines()) for seed in seeds("nmea")]
+        case "gpsd":
+            return [
+                _GPSD + burst("SiRF", Moment(5.0)),
+                _GPSD.replace(b'"native":0', b'"native":1') + burst("u-blox", Moment(5.0)),
+            ]
         case "salvage":
             return [_first_chunk(walk)[: len(walk) * share // 4] for walk in _walks("jpeg")[1:3] for share in (1, 3)]
         case "message":

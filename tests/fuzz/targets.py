@@ -18,6 +18,7 @@ from tracker.errors import MalformedInput
 from tracker.log import TOPICS, Log
 from tracker.measurements import Frame, GpsFix, GpsVelocity, Measurement
 from tracker.salvage import cut_chunk
+from tracker.sources.gpsd_protocol import GpsdProtocol
 from tracker.sources.nmea import NmeaReader
 
 T_NS = 1_000_000_000_000
@@ -59,6 +60,23 @@ def _is_sound(fix: GpsFix) -> bool:
 def sentences(data: bytes) -> None:
     """Read lines as sentences whose checksums are right, so that what they say is what is fuzzed."""
     nmea(b"".join(sentence(line.decode("latin-1")) for line in data.replace(b"$", b"").splitlines()))
+
+
+def gpsd(data: bytes) -> None:
+    """Read a connection to gpsd."""
+    expected = _by_gpsd([data])
+    assert _by_gpsd([data[at : at + 1] for at in range(len(data))]) == expected, "in pieces it is another connection"
+
+
+def _by_gpsd(pieces: list[bytes]) -> tuple[object, ...]:
+    protocol, reader = GpsdProtocol(), NmeaReader()
+    try:
+        found = [protocol.feed(piece) for piece in pieces]
+    except MalformedInput:
+        return ("refused",)
+    reader.feed(b"".join(found), T_NS)
+    reader.close(T_NS)
+    return b"".join(found), dict(reader.counts), protocol.devices
 
 
 def message(data: bytes) -> None:
@@ -128,6 +146,7 @@ def _named(measurement: Measurement) -> str:
 TARGETS: dict[str, Callable[[bytes], None]] = {
     "nmea": nmea,
     "sentences": sentences,
+    "gpsd": gpsd,
     "message": message,
     "log": log,
     "container": container,

@@ -11,7 +11,15 @@ from tests.fuzz.seeds import seeds
 from tests.fuzz.targets import TARGETS
 
 ROOT = Path(__file__).parents[2]
-RUNS = {"nmea": 800, "sentences": 1_200, "message": 4_000, "log": 500, "container": 2_000, "salvage": 4_000}
+RUNS = {
+    "nmea": 800,
+    "sentences": 1_200,
+    "gpsd": 500,
+    "message": 4_000,
+    "log": 500,
+    "container": 2_000,
+    "salvage": 4_000,
+}
 
 
 @pytest.mark.parametrize("target", TARGETS)

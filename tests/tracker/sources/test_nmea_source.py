@@ -4,6 +4,7 @@ import os
 import pty
 import socket
 import termios
+import time
 import tty
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -156,6 +157,16 @@ def test_a_receiver_that_is_pulled_out_is_lost_and_found_again() -> None:
     assert "plug the receiver in again" in str(heard.error)
     assert source.status().detail == str(heard.error)
     assert not source.status().attached
+
+
+def test_a_receiver_that_falls_silent_is_lost(receiver: Receiver, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Noise is silence too; the message says where to look."""
+    monkeypatch.setattr("tracker.sources.nmea_source._SILENCE_NS", 300_000_000)
+    with Listening(nmea_source(f"serial:{receiver.path}:9600")) as heard:
+        while not isinstance(heard.error, SourceLost):
+            receiver.say(b"\xff\x00noise\r\n")
+            time.sleep(0.01)
+    assert "check the receiver's power" in str(heard.error)
 
 
 @pytest.mark.parametrize(
