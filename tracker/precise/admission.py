@@ -12,7 +12,7 @@ LEAP_NS = 1_000_000_000
 #: So many after a leap, one soon after the other, show that the sensor was away, or its clock set.
 _LEAPT = 10
 #: What is stamped this far ahead of the newest inertial sample would wait for a time that may not come.
-_AHEAD_NS = 2_000_000_000
+_AHEAD_NS = 5_000_000_000
 #: Who says that they stand further than this from where the receiver has them is mistaken.
 _ASTRAY_M = 1_000.0
 

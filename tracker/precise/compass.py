@@ -23,6 +23,16 @@ class Compass:
         self.is_trusted = False
         """Whether the last sample was the Earth's field."""
 
+    def turned(self, by_rad: float) -> None:
+        """Take a turn of the filter's heading that the rig has not made: a correction, or another filter that is the best now."""
+        c, s = cos(by_rad), sin(by_rad)
+        self._cos, self._sin = self._cos * c + self._sin * s, self._sin * c - self._cos * s
+
+    def forget(self) -> None:
+        """Forget all that was told: the attitude that it was told for is not known any more."""
+        self._cos = self._sin = 0.0
+        self._seen = 0
+
     def field(self, sample: MagSample, wxyz_site_body: Wxyz) -> None:
         """Take a sample, and the attitude at its stamp."""
         x, y, z = rotate(wxyz_site_body, sample.field_body_t)

@@ -1,12 +1,14 @@
 """The filter fed in the order of measuring: each measurement carries the state on to its stamp and corrects it there."""
 
-from math import hypot, pi, sqrt
+from collections.abc import Iterator
+from contextlib import contextmanager
+from math import hypot, sqrt
 
 import numpy as np
 
 from tracker.fixes import variance_m2
 from tracker.geodesy import SiteFrame
-from tracker.geometry import wrap_rad, wxyz_level_from_gravity, yaw_of
+from tracker.geometry import wrap_rad, yaw_of
 from tracker.measurements import (
     CompassHeading,
     GpsFix,
@@ -21,22 +23,23 @@ from tracker.measurements import (
 from tracker.precise import observations
 from tracker.precise.activity import Activity
 from tracker.precise.compass import Compass
-from tracker.precise.error_model import start_covariance
+from tracker.precise.error_model import ProcessNoise
 from tracker.precise.error_state import ErrorState
 from tracker.precise.eye import Eye
+from tracker.precise.gap import LEVEL_NOISE, AfterGap, drift, has_lost_heading, is_gap
 from tracker.precise.ground import EyeHeight, standing_z_m
 from tracker.precise.hypotheses import Hypotheses
+from tracker.precise.insistence import Insistence
 from tracker.precise.landmarks import Landmarks
-from tracker.precise.memory import Memory, recall
-from tracker.precise.navigation import Biases, Navigation, mean, sample_between
+from tracker.precise.memory import Memory
+from tracker.precise.navigation import mean, sample_between
 from tracker.precise.settings import PreciseSettings
+from tracker.precise.start import Start
 from tracker.precise.stride import Stride
 from tracker.precise.timeline import Keyframe, Timed
 from tracker.rig import Rig
 
 _I3 = np.eye(3)
-#: The first specific force is averaged over this long.
-_START_S = 0.5
 #: Pictures held for those to come.
 _HELD = 2
 
@@ -55,25 +58,26 @@ class Engine:
         memory: Memory | None = None,
     ) -> None:
         self._eyes_z_m = eyes_z_m
-        self._memory = memory
         self._settings = settings
         self._site = site
         self._eye = Eye(settings, rig)
         x, y, z = rig.T_body_gps[:3, 3].tolist()
         self._lever_gps_m: Vector3 = (x, y, z)
         self._landmarks = Landmarks(self._eye.lever_m)
-        self._gravity = gravity_m_s2
         self._compass = compass
         self._activity = Activity()
         self._stride = Stride()
-        self._start: list[ImuSample] = []
+        self._start = Start(settings, gravity_m_s2, memory)
         self._last: ImuSample | None = None
+        self._counted_ns = 0
+        self._after_gap: AfterGap | None = None
+        self._noise = ProcessNoise(settings)
         self.hypotheses: Hypotheses | None = None
         """None until the first half second of inertial samples."""
         self._began_ns: int | None = None
         self.fix_ns: int | None = None
         """Of the last fix taken in."""
-        self._refused = 0
+        self._insistence = Insistence(settings.insist)
         self._compass_due_ns = 0
         self._suspicion = 0.0
         self.heading_found = False
@@ -100,7 +104,20 @@ class Engine:
         if self.hypotheses is None or self._last is None:
             return
         if following is not None and measurement.t_ns > self._last.t_ns:
-            self._take_imu(sample_between(self._last, following, measurement.t_ns), counted=False)
+            sample = sample_between(self._last, following, measurement.t_ns)
+            self._take_imu(sample, counted=False, in_gap=is_gap(self._counted_ns, following.t_ns))
+        with self._heading_followed():
+            self._correct(measurement)
+
+    @contextmanager
+    def _heading_followed(self) -> Iterator[None]:
+        """Tell the compass of every correction of the heading, since it holds what was measured against the filter's."""
+        before_rad = yaw_of(self.best.nav.wxyz_site_body)
+        yield
+        self._compass.turned(wrap_rad(yaw_of(self.best.nav.wxyz_site_body) - before_rad))
+
+    def _correct(self, measurement: Timed) -> None:
+        assert self.hypotheses is not None
         match measurement:
             case GpsFix():
                 self._take_fix(measurement)
@@ -123,40 +140,49 @@ class Engine:
                 for filter_ in self.hypotheses.filters:
                     filter_.hold(_HELD)
 
-    def _take_imu(self, sample: ImuSample, *, counted: bool = True) -> None:
+    def _take_imu(self, sample: ImuSample, *, counted: bool = True, in_gap: bool = False) -> None:
         last = self._last
         if last is None or self.hypotheses is None:
             self._begin(sample)
             return
         self._last = sample
         gyro, accel = mean(last.gyro_rad_s, sample.gyro_rad_s), mean(last.accel_m_s2, sample.accel_m_s2)
-        before = self.best.nav
+        before, in_gap = self.best.nav, in_gap or (counted and is_gap(self._counted_ns, sample.t_ns))
         for filter_ in self.hypotheses.filters:
-            filter_.advance(sample.t_ns, gyro, accel)
+            if in_gap:
+                drift(filter_, self._noise, sample.t_ns)
+            else:
+                filter_.advance(sample.t_ns, gyro, accel)
         self._landmarks.moved(before, self.best.nav)
         if counted:
+            self._counted_ns = sample.t_ns
+            self._look_after_gap(sample, in_gap)
+        if counted and not in_gap:
             self._stride.step(accel, self.best.nav.wxyz_site_body, (sample.t_ns - last.t_ns) * 1e-9)
             if self._activity.step(sample):
-                self._cycle(sample.t_ns)
+                with self._heading_followed():
+                    self._cycle(sample.t_ns)
+
+    def _look_after_gap(self, sample: ImuSample, in_gap: bool) -> None:
+        """Level the rig when half a second after a gap is over, and look for its heading where nothing has told it."""
+        assert self.hypotheses is not None
+        if in_gap:
+            self._after_gap = AfterGap(sample.t_ns)
+            self._compass.forget()
+        elif self._after_gap is not None and self._after_gap.take(sample, self.best):
+            level, self._after_gap = self._after_gap.level(), None
+            if not self.hypotheses.are_many:
+                self.hypotheses.correct(lambda f: f.correct(*level, LEVEL_NOISE))
+                if has_lost_heading(self.best):
+                    self._find_heading(yaw_of(self.best.nav.wxyz_site_body))
 
     def _begin(self, sample: ImuSample) -> None:
-        self._last = sample
-        self._start.append(sample)
+        self._last, self._counted_ns = sample, sample.t_ns
         self._activity.step(sample)
-        if sample.t_ns - self._start[0].t_ns < _START_S * 1e9:
-            return
-        x, y, z = (sum(s.accel_m_s2[axis] for s in self._start) / len(self._start) for axis in range(3))
-        self._start.clear()
-        if hypot(x, y, z) < 1.0:
-            return  # a rig in free fall has no up
-        settings, zero = self._settings, (0.0, 0.0, 0.0)
-        self._began_ns = sample.t_ns
-        nav = Navigation(sample.t_ns, zero, zero, wxyz_level_from_gravity((x, y, z)))
-        cov = start_covariance(settings, (1e3, 1e3, 1e3), 1.0, pi / sqrt(3.0))
-        state = ErrorState(settings, nav, Biases(), cov, self._gravity)
-        if self._memory is not None:
-            recall(state, self._memory)
-        self.hypotheses = Hypotheses(state)
+        state = self._start.take(sample)
+        if state is not None:
+            self._began_ns = sample.t_ns
+            self.hypotheses = Hypotheses(state)
 
     @property
     def best(self) -> ErrorState:
@@ -215,11 +241,8 @@ class Engine:
             self._stand_on_ground()  # before anything is shown: a first height that is off by metres would be seen sliding
         self._judge_heading()
         if done is None or done.used:
-            self._refused = 0
-            return
-        self._refused += 1
-        if self._refused >= settings.insist:
-            self._refused = 0
+            self._insistence.accepted()
+        elif self._insistence.believes(fix.t_ns, p, self.best.nav.p_m, max(ex, ey)):
             for filter_ in hypotheses.filters:
                 filter_.place(p)
                 filter_.correct(*observations.gps_position(filter_, p, sigma, self._lever_gps_m), noise)
@@ -267,10 +290,12 @@ class Engine:
 
     # -- heading ------------------------------------------------------------------------------------------------------
 
-    def _find_heading(self) -> None:
+    def _find_heading(self, likely_rad: float | None = None) -> None:
+        """Try all headings; without a compass `likely_rad` is preferred."""
         assert self.hypotheses is not None
         self.heading_found, self._suspicion = False, 0.0
-        self.hypotheses.spread(self._settings.hypotheses, self._compass.yaw_rad(self.best.nav.wxyz_site_body))
+        told_rad = self._compass.yaw_rad(self.best.nav.wxyz_site_body)
+        self.hypotheses.spread(self._settings.hypotheses, likely_rad if told_rad is None else told_rad)
 
     def _take_magnetometer(self, sample: MagSample) -> None:
         hypotheses, settings = self.hypotheses, self._settings

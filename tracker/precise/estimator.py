@@ -21,12 +21,13 @@ from tracker.measurements import (
     Standpoint,
     VisualMotion,
 )
-from tracker.precise.admission import LEAP_NS, Admission
+from tracker.precise.admission import Admission
 from tracker.precise.blend import Blend
 from tracker.precise.compass import Compass
 from tracker.precise.engine import Engine
 from tracker.precise.error_model import inertial_transition
 from tracker.precise.free import FreeIntegral
+from tracker.precise.gap import LONGEST_GAP_NS, doubt
 from tracker.precise.ground import EyeHeight
 from tracker.precise.memory import Memory, remember
 from tracker.precise.navigation import Navigation
@@ -44,6 +45,7 @@ _UNFORESEEN_M_S2, _UNFORESEEN_RAD_S2 = 3.0, 3.0
 _WAIT_FOR_FIX_S = 3.0
 #: Position and rotation among the inertial states, and so in a pose.
 _POSE = np.array([0, 1, 2, 6, 7, 8])
+_DIAGONAL = (np.arange(6), np.arange(6))
 
 
 class PreciseEstimator:
@@ -109,7 +111,11 @@ class PreciseEstimator:
         newest_ns = self._timeline.newest_ns
         if newest_ns is not None and self._admission.refuses(measurement, newest_ns):
             return Outcome.REJECTED_GATE
-        if isinstance(measurement, ImuSample) and newest_ns is not None and measurement.t_ns > newest_ns + LEAP_NS:
+        if (
+            isinstance(measurement, ImuSample)
+            and newest_ns is not None
+            and measurement.t_ns > newest_ns + LONGEST_GAP_NS
+        ):
             self._memory = self.memory() or self._memory
             self._begin()  # nobody knows what the rig has done in between
         if not self._timeline.add(measurement):
@@ -175,6 +181,8 @@ class PreciseEstimator:
         Phi = inertial_transition(dt_s, best.R_site_body, gained)[_POSE]
         offset = Phi[:, :9] @ self._blend.offset(end.t_ns)
         cov: Matrix = Phi @ best.covariance[:15, :15] @ Phi.T + np.outer(offset, offset)
+        p, _, tilt, turn = doubt(self._free.gaps_s(start.t_ns, end.t_ns))
+        cov[_DIAGONAL] += (p, p, p, tilt, tilt, turn)
         ahead_s = max(0, end.t_ns - self._free.newest_ns) * 1e-9
         cov[:3, :3] += (0.5 * _UNFORESEEN_M_S2 * ahead_s**2) ** 2 * np.eye(3)
         cov[3:, 3:] += (0.5 * _UNFORESEEN_RAD_S2 * ahead_s**2) ** 2 * np.eye(3)

@@ -4,9 +4,11 @@ It is the same in whatever order the samples arrive: a late one has it done agai
 """
 
 from bisect import bisect_left
+from itertools import pairwise
 from typing import NamedTuple
 
 from tracker.measurements import ImuSample
+from tracker.precise.gap import held, is_gap
 from tracker.precise.navigation import Biases, Navigation, advance, carried, mean
 
 #: States are kept for predictions of the recent past.
@@ -69,6 +71,8 @@ class FreeIntegral:
         # what the filter had taken when the sample before this one came in its turn: later it may know more
         known_ns = last.t_ns - self._lag_ns
         biases = next((biases for t_ns, biases in reversed(self._learnt) if t_ns < known_ns), Biases())
+        if is_gap(nav.t_ns, sample.t_ns):
+            return _Step(held(nav, sample.t_ns), sample, biases)
         gyro, accel = mean(last.gyro_rad_s, sample.gyro_rad_s), mean(last.accel_m_s2, sample.accel_m_s2)
         return _Step(advance(nav, sample.t_ns, gyro, accel, biases, self._gravity), sample, biases)
 
@@ -80,12 +84,22 @@ class FreeIntegral:
         nav = carried(state, self._at(state.t_ns), self._at(known_ns), self._gravity)
         return nav if known_ns == t_ns else self._beyond(nav, t_ns)
 
+    def gaps_s(self, from_ns: int, to_ns: int) -> float:
+        """Return how much of a time lies in gaps between samples, seconds."""
+        first = max(0, bisect_left(self._steps, from_ns, key=lambda step: step.nav.t_ns) - 1)
+        times_ns = [step.nav.t_ns for step in self._steps[first:]]
+        return sum(
+            (min(b, to_ns) - max(a, from_ns)) * 1e-9 for a, b in pairwise(times_ns) if a < to_ns and is_gap(a, b)
+        )
+
     def _at(self, t_ns: int) -> Navigation:
         place = bisect_left(self._steps, t_ns, key=lambda step: step.nav.t_ns)
         after = self._steps[place]
         if after.nav.t_ns == t_ns:
             return after.nav
         before = self._steps[place - 1]
+        if is_gap(before.nav.t_ns, after.nav.t_ns):
+            return held(before.nav, t_ns)
         gyro = mean(before.sample.gyro_rad_s, after.sample.gyro_rad_s)
         accel = mean(before.sample.accel_m_s2, after.sample.accel_m_s2)
         return advance(before.nav, t_ns, gyro, accel, after.biases, self._gravity)

@@ -6,7 +6,7 @@ from tracker.measurements import GpsFix, GpsVelocity, ImuSample, Measurement, Ve
 from tracker.soundness import Soundness
 
 #: A sensor's noise makes six equal numbers twice in a row rare; so many times, and for so long, they are not measured.
-_SAMES, _SAME_NS = 25, 250_000_000
+_SAMES, _SAME_NS = 10, 100_000_000
 #: A receiver may repeat a position while the rig stands. While it walks faster than this,
 _WALKS_M_S = 0.5
 #: no position stays the same for so long.

@@ -64,7 +64,7 @@ def test_a_sample_that_leaps_is_left_out_and_ten_that_follow_each_other_are_not(
 def test_what_is_stamped_far_ahead_of_the_inertial_sensor_is_left_out() -> None:
     admission = Admission(SITE)
     assert not admission.refuses(GpsVelocity(2 * S, 2 * S, ZERO), S)
-    assert admission.refuses(GpsVelocity(4 * S, 4 * S, ZERO), S)
+    assert admission.refuses(GpsVelocity(7 * S, 7 * S, ZERO), S)
 
 
 def test_nobody_stands_a_kilometre_from_where_the_receiver_has_them() -> None:
