@@ -20,6 +20,8 @@ ALLOWED_LIBRARIES = {
     "tracker/log_writer.py": {"mcap"},
     "tracker/salvage.py": {"lz4", "mcap", "zstandard"},
     "tracker/ros_messages.py": {"rosbags"},
+    "tracker/calibrate/board.py": {"cv2"},
+    "tracker/calibrate/camera_lens.py": {"cv2"},
     "tracker/geomagnetism.py": {"pygeomag"},
     "tracker/sources/camera.py": {"cv2"},
     "tracker/sources/nmea_sentence.py": {"pynmeagps"},

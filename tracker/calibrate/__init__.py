@@ -1,0 +1,1 @@
+"""Calibrations of a rig's sensors: pure functions from what sensors said to sheets of the rig file."""
