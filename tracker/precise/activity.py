@@ -48,6 +48,11 @@ class Activity:
         self._judge()
         return True
 
+    def forget(self) -> None:
+        """Begin a new window: samples were missing, and one alone looks as still as can be."""
+        self._window.clear()
+        self._due_ns = None
+
     def _judge(self) -> None:
         window, n = self._window, len(self._window)
         x, y, z = (sum(s.gyro_rad_s[axis] for s in window) / n for axis in range(3))

@@ -169,6 +169,7 @@ class Engine:
         if in_gap:
             self._after_gap = AfterGap(sample.t_ns)
             self._compass.forget()
+            self._activity.forget()
         elif self._after_gap is not None and self._after_gap.take(sample, self.best):
             level, self._after_gap = self._after_gap.level(), None
             if not self.hypotheses.are_many:

@@ -8,6 +8,7 @@ import pytest
 from tests.tracker.precise.stream import NAMES, S, estimator, stream, walk
 from tracker.geometry import wrap_rad, wxyz_from_matrix, yaw_of
 from tracker.measurements import ImuSample, MagSample, Measurement
+from tracker.precise.activity import Activity
 from tracker.precise.compass import Compass
 from tracker.precise.error_model import ProcessNoise, start_covariance
 from tracker.precise.error_state import ErrorState
@@ -111,3 +112,15 @@ def test_with_a_compass_the_first_heading_is_near_the_truth(name: str) -> None:
     truth = walk().at(np.array([pose.t_ns]))
     off_rad = wrap_rad(yaw_of(pose.wxyz_site_body) - yaw_of(wxyz_from_matrix(truth.R_site_body[0])))
     assert abs(degrees(off_rad)) < 12.0
+
+
+def test_one_sample_after_a_gap_does_not_look_like_standing() -> None:
+    """Nothing is said of what the walker does before there is half a second of it again."""
+    activity = Activity()
+    shaken = [ImuSample(i * S // 100, 0, (0.0, 0.0, 0.0), (0.0, 0.0, 9.8 + 2.0 * (-1.0) ** i)) for i in range(200)]
+    for sample in shaken[:100]:
+        activity.step(sample)
+    activity.forget()
+    later = [activity.step(sample) for sample in shaken[150:]]
+    assert not any(later[:50])
+    assert not activity.stands
