@@ -40,7 +40,7 @@ _KINDS = (ImuSample, MagSample, CompassHeading, GpsFix, GpsVelocity, VisualMotio
 #: Further ahead of the newest inertial sample than this, nothing is known.
 _LONGEST_PREDICTION_NS = 1_000_000_000
 #: What a head may do after the newest inertial sample: standard deviations of what adds to its motion then.
-_UNFORESEEN_M_S2, _UNFORESEEN_RAD_S2 = 3.0, 5.0
+_UNFORESEEN_M_S2, _UNFORESEEN_RAD_S2 = 3.0, 4.0
 #: A receiver that has told no position for this long may not be there: attitude alone is better than nothing.
 _WAIT_FOR_FIX_S = 3.0
 #: Position and rotation among the inertial states, and so in a pose.
