@@ -177,9 +177,9 @@ class PhidgetSource(ABC, Generic[Said]):
 
         return guarded
 
-    def _receive(self, said: Said | None) -> None:
-        """Put into the queue what a handler was told; None for a new beginning."""
-        self._t_heard_ns = self._clock_ns()
+    def _receive(self, said: Said | None, t_recv_ns: int) -> None:
+        """Put into the queue what a handler was told, and when; None for a new beginning."""
+        self._t_heard_ns = t_recv_ns
         if self._inbox.qsize() < _WAITING:
             self._inbox.put(said)
         else:
@@ -191,7 +191,7 @@ class PhidgetSource(ABC, Generic[Said]):
 
     def _on_attach(self, channel: Any) -> None:
         self._count("attached")
-        self._receive(None)
+        self._receive(None, self._clock_ns())
         self._device = f"{channel.getDeviceName()}, serial number {channel.getDeviceSerialNumber()}"
         self._device_facts = {
             "model": channel.getDeviceSKU(),

@@ -73,18 +73,20 @@ class PhidgetGpsSource(PhidgetSource[_Said]):
         self._utc_ns: int | None = None
 
     def _on_position(self, channel: Any, _lat_deg: float, _lon_deg: float, _h_msl_m: float) -> None:
-        self._receive((self._clock_ns(), _time_of_day_ns(channel), None, None, None))
+        t_recv_ns = self._clock_ns()
+        self._receive((t_recv_ns, _time_of_day_ns(channel), None, None, None), t_recv_ns)
 
     def _on_heading(self, channel: Any, heading_deg: float, speed_km_h: float) -> None:
         t_recv_ns, time_of_day_ns = self._clock_ns(), _time_of_day_ns(channel)
         nmea = channel.getNMEAData()
         rmc = Rmc(time_of_day_ns, None, None, None, 1, speed_km_h * _KM_H_M_S, radians(heading_deg))
-        self._receive((t_recv_ns, time_of_day_ns, _gga(nmea.GGA, time_of_day_ns), _gsa(nmea.GSA), rmc))
+        gga, gsa = _gga(nmea.GGA, time_of_day_ns), _gsa(nmea.GSA)
+        self._receive((t_recv_ns, time_of_day_ns, gga, gsa, rmc), t_recv_ns)
 
     def _on_fix_state(self, channel: Any, has_fix: int) -> None:
         t_recv_ns, time_of_day_ns = self._clock_ns(), _time_of_day_ns(channel)
         gga = None if has_fix else _no_fix(time_of_day_ns)
-        self._receive((t_recv_ns, time_of_day_ns, gga, None, None))
+        self._receive((t_recv_ns, time_of_day_ns, gga, None, None), t_recv_ns)
 
     def _measure(self, said: _Said) -> Iterator[Measurement]:
         t_recv_ns, time_of_day_ns, gga, gsa, rmc = said

@@ -89,7 +89,8 @@ class PhidgetSpatialSource(PhidgetSource[_Said]):
     def _on_data(
         self, _channel: Any, accel_g: list[float], gyro_deg_s: list[float], field_gauss: list[float], t_ms: float
     ) -> None:
-        self._receive((self._clock_ns(), t_ms, accel_g, gyro_deg_s, field_gauss))
+        t_recv_ns = self._clock_ns()
+        self._receive((t_recv_ns, t_ms, accel_g, gyro_deg_s, field_gauss), t_recv_ns)
 
     def _measure(self, said: _Said) -> Iterator[Measurement]:
         t_recv_ns, t_ms, accel_g, gyro_deg_s, field_gauss = said

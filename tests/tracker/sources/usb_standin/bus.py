@@ -44,6 +44,7 @@ class Bus:
     def __init__(self, library: Path) -> None:
         # Global, so that libphidget22, which asks for a library of this SONAME, is given this one.
         self._library = ctypes.CDLL(str(library), mode=ctypes.RTLD_GLOBAL)
+        self._devices: list[int] = []
 
     def add(self, kind: tuple[int, int], serial: int) -> int:
         """Add a device, plugged in, and return its number."""
@@ -53,7 +54,13 @@ class Bus:
         if kind == SPATIAL_1056:
             self.answer(number, CALIBRATION_1056_ASKED, calibration_1056())
         self.plug(number, True)
+        self._devices.append(number)
         return number
+
+    def close(self) -> None:
+        """Pull out all devices that were added here."""
+        for number in self._devices:
+            self.plug(number, False)
 
     def plug(self, number: int, plugged: bool) -> None:
         """Plug a device in, as anew, or pull it out."""

@@ -17,7 +17,7 @@
 #include <sys/types.h>
 #include <time.h>
 
-enum { DEVICES = 4, REPORTS = 4096, REPORT_BYTES = 64, TRANSFERS = 512, SERIAL_BYTES = 16 };
+enum { DEVICES = 64, REPORTS = 4096, REPORT_BYTES = 64, TRANSFERS = 512, SERIAL_BYTES = 16, EVENTS_NS = 20000000 };
 enum { LIBUSB_ERROR_IO = -1, LIBUSB_ERROR_NO_DEVICE = -4, LIBUSB_ERROR_NOT_FOUND = -5, LIBUSB_ERROR_BUSY = -6, LIBUSB_ERROR_PIPE = -9 };
 enum { TRANSFER_COMPLETED = 0, TRANSFER_CANCELLED = 3, TRANSFER_NO_DEVICE = 5 };
 enum { DEVICE_TO_HOST = 0x80, GET_DESCRIPTOR = 6, SET_REPORT = 9, REPORT_DESCRIPTOR = 0x22 };
@@ -70,7 +70,7 @@ struct transfer {
 struct device {
     uint16_t product, version;
     char serial[SERIAL_BYTES];
-    int plugged, address;
+    int plugged, opened, address;
     unsigned char reports[REPORTS][REPORT_BYTES];
     int first, count;
     unsigned char answer[REPORT_BYTES];
@@ -116,11 +116,12 @@ void standin_plug(int number, int plugged) {
     pthread_mutex_unlock(&lock);
 }
 
-/* Queues a report as a device would send it; returns 1, or 0 when it is not plugged in or its queue is full. */
+/* Queues a report as a device would send it; returns 1, or 0 when nobody reads it: the device is not plugged in or not opened,
+ * or its queue is full. */
 int standin_push(int number, const unsigned char *report, int length) {
     pthread_mutex_lock(&lock);
     struct device *device = &devices[number];
-    int taken = device->plugged && device->count < REPORTS && length <= REPORT_BYTES;
+    int taken = device->plugged && device->opened && device->count < REPORTS && length <= REPORT_BYTES;
     if (taken) {
         unsigned char *slot = device->reports[(device->first + device->count++) % REPORTS];
         memset(slot, 0, REPORT_BYTES);
@@ -233,12 +234,19 @@ void libusb_free_config_descriptor(struct config_descriptor *config) {
 }
 
 int libusb_open(void *device, void **handle) {
+    struct device *self = device;
+    pthread_mutex_lock(&lock);
+    self->opened = self->plugged;
+    self->count = 0;
+    pthread_mutex_unlock(&lock);
     *handle = device;
-    return ((struct device *)device)->plugged ? 0 : LIBUSB_ERROR_NO_DEVICE;
+    return self->opened ? 0 : LIBUSB_ERROR_NO_DEVICE;
 }
 
 void libusb_close(void *handle) {
-    (void)handle;
+    pthread_mutex_lock(&lock);
+    ((struct device *)handle)->opened = 0;
+    pthread_mutex_unlock(&lock);
 }
 
 void *libusb_get_device(void *handle) {
@@ -375,11 +383,11 @@ static struct transfer *end_one(void) {
 }
 
 int libusb_handle_events_timeout_completed(void *ctx, struct timeval *timeout, int *completed) {
-    (void)ctx, (void)completed;
+    /* It may return before its time, and must when a device is closed: so it never waits for long. */
+    (void)ctx, (void)timeout, (void)completed;
     struct timespec until;
     clock_gettime(CLOCK_REALTIME, &until);
-    until.tv_sec += timeout->tv_sec;
-    until.tv_nsec += timeout->tv_usec * 1000;
+    until.tv_nsec += EVENTS_NS;
     until.tv_sec += until.tv_nsec / 1000000000;
     until.tv_nsec %= 1000000000;
     pthread_mutex_lock(&lock);
