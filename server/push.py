@@ -5,6 +5,7 @@ Two threads: `rig-link` connects and sends, `rig-control` reads requests and ans
 
 import logging
 import socket
+import struct
 from collections.abc import Callable
 from contextlib import suppress
 from threading import Thread
@@ -30,7 +31,15 @@ from tracker.rig import Rig
 _logger = logging.getLogger(__name__)
 
 _FIRST_PAUSE_S: Final = 0.1
-_LONGEST_PAUSE_S: Final = 5.0
+_LONGEST_PAUSE_S: Final = 2.0
+#: A connection that has lasted so long was a good one.
+_GOOD_S: Final = 5.0
+#: A network that has vanished without a word is noticed when nothing could be sent for so long, and the server is looked for anew.
+_STUCK_S = 5
+#: A server that says nothing back for so long has gone, even where bytes still find a place on the way.
+_PING_S, _PONG_S = 5.0, 10.0
+#: What may lie in the kernel on its way out, bytes: two or three pictures. More would be old when it arrives.
+_UNDER_WAY: Final = 128 * 1024
 _FAREWELL_S: Final = 2.0
 _MAX_CONTROL_BYTES: Final = 16 * 1024
 #: Refusals that will not change by asking again.
@@ -172,7 +181,7 @@ class RigLink:
                 t_begin_s = monotonic()
                 self._exchange(self._connect())
                 # A server that hangs up at once is not asked again at once.
-                pause_s = _FIRST_PAUSE_S if monotonic() - t_begin_s > _LONGEST_PAUSE_S else pause_s
+                pause_s = _FIRST_PAUSE_S if monotonic() - t_begin_s > _GOOD_S else pause_s
             except InvalidStatus as exc:
                 self._note_refusal(exc)
             except (OSError, WebSocketException) as exc:
@@ -181,15 +190,20 @@ class RigLink:
                 pause_s = min(2.0 * pause_s, _LONGEST_PAUSE_S)
 
     def _connect(self) -> ClientConnection:
-        return connect(
+        connection = connect(
             self._url,
             additional_headers={"Authorization": f"Bearer {self._token}"},
             compression=None,  # pictures are compressed already
             proxy=None,
             open_timeout=5.0,
             close_timeout=1.0,
+            ping_interval=_PING_S,
+            ping_timeout=_PONG_S,
             max_size=_MAX_CONTROL_BYTES,
         )
+        connection.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _UNDER_WAY)
+        connection.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", _STUCK_S, 0))
+        return connection
 
     def _exchange(self, connection: ClientConnection) -> None:
         """Send until the connection or the link ends."""
