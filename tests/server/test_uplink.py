@@ -63,7 +63,7 @@ def live_rig(log: Log) -> LiveRig:
 def test_the_rig_tracks_on_while_its_server_is_killed_and_sends_the_newest_first(log: Log, tmp_path: Path) -> None:
     """Whole state and newest picture come at once with the new server; none of those taken meanwhile.
 
-    However long it was away: pauses between attempts end at two seconds, and one picture, one pose and the state are all that is kept.
+    However long it was away: attempts are two seconds apart at most, and one picture, one pose and the state are all that is kept.
     """
     rig = live_rig(log)
     with server_process(tmp_path) as (_, port):
