@@ -47,7 +47,7 @@ function jsonOf(random: Random, depth: number): unknown {
 }
 
 test("a session is read as the server wrote it", () => {
-  const { health: _health, connected: _connected, ...told } = SESSION;
+  const { connected: _connected, ...told } = SESSION;
   expect(parseSession(SESSION)).toEqual(told);
   expect(parseSessions({ sessions: [SESSION, { ...SESSION, name: "b" }] }).map(({ name }) => name)).toEqual([
     "walk",
@@ -69,6 +69,14 @@ test("a reply tells what became of a request", () => {
     type: "reply",
     reply: { requestId: "v2", ok: true, error: null, didSeek: true },
   });
+});
+
+test("of a rig's health the sentence is read, and what has none is left out", () => {
+  const gps = { state: "lost", trouble: true, sentence: "The GPS receiver is gone.", rate_hz: 0 };
+  expect(parseSession({ ...SESSION, health: { gps, imu: { trouble: true }, camera: null } }).health).toEqual({
+    gps: { trouble: true, sentence: "The GPS receiver is gone." },
+  });
+  expect(parseSession({ ...SESSION, health: [gps] }).health).toEqual({});
 });
 
 test("a message of a newer server is passed over", () => {

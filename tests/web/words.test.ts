@@ -8,6 +8,7 @@ import {
   metresText,
   motionColour,
   motionWords,
+  newsOf,
   type Situation,
   sentenceFor,
 } from "../../web/src/words";
@@ -22,6 +23,7 @@ const WELL: Situation = {
   hasPose: true,
   headingKnown: true,
   notice: null,
+  health: {},
   asked: null,
   model: "shown",
 };
@@ -40,6 +42,7 @@ const TROUBLES: readonly (readonly [Partial<Situation>, RegExp])[] = [
   [{ connection: "lost" }, /connection is lost/],
   [{ connection: "connecting" }, /^Connecting/],
   [{ sincePicture_ms: null }, /No pictures/],
+  [{ health: { gps: { trouble: true, sentence: "The GPS receiver is gone." } } }, /receiver is gone/],
   [{ model: "failed" }, /model of the square could not/],
   [{ hasPose: false }, /Finding out where you are/],
   [{ headingKnown: false }, /find north/],
@@ -62,6 +65,25 @@ test("every sentence is one sentence, in plain words", () => {
     expect(sentence).toMatch(/^[A-Z].*[.…?]$/);
     expect(sentence).not.toMatch(/undefined|null|NaN|WebSocket|error/);
   }
+});
+
+test("a sensor that goes and one that is back are said once each", () => {
+  const well = { gps: { trouble: false, sentence: "The GPS receiver is well: 10 messages a second." } };
+  const gone = { gps: { trouble: true, sentence: "The GPS receiver is gone: plug it in." } };
+  expect(newsOf({}, well)).toBeNull();
+  expect(newsOf({}, gone)).toBe("The GPS receiver is gone: plug it in.");
+  expect(newsOf(well, gone)).toBe("The GPS receiver is gone: plug it in.");
+  expect(newsOf(gone, gone)).toBeNull();
+  expect(newsOf(gone, well)).toBe("The GPS receiver is back.");
+  expect(newsOf({ lidar: gone.gps }, { lidar: well.gps })).toBe("The lidar is back.");
+  expect(newsOf(gone, {})).toBeNull();
+});
+
+test("pictures that stay away are explained by the camera's own words", () => {
+  const camera = { trouble: true, sentence: "The camera is not there: plug it in." };
+  const live: Situation = { ...WELL, kind: "live", sincePicture_ms: 9000 };
+  expect(sentenceFor(live)).toMatch(/is the rig running/);
+  expect(sentenceFor({ ...live, health: { camera } })).toBe(camera.sentence);
 });
 
 test("a walk that the address names is named where there is none", () => {

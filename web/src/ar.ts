@@ -12,7 +12,7 @@ import { parseSessions, parseState, type Session } from "./protocol";
 import { parseSite } from "./site";
 import { Link } from "./socket";
 import { type CameraPose, decodeFrame, type FrameMessage, magicOf, WireError } from "./wire";
-import type { Connection, Situation } from "./words";
+import { type Connection, newsOf, type Situation } from "./words";
 
 /** The real ground is there already: the model's is only a hint of its paving. */
 const GROUND_SHARE = 0.25;
@@ -102,10 +102,12 @@ class Page {
   private text(text: string): void {
     const message = parseState(text);
     if (message?.type === "session") {
+      const news = this.session && newsOf(this.session.health, message.session.health);
+      if (news) this.hud.announce(news);
       this.session = message.session;
       this.bar.show(message.session);
     } else if (message?.type === "reply" && !message.reply.ok) {
-      this.hud.complain(message.reply.error ?? "That did not work.");
+      this.hud.announce(message.reply.error ?? "That did not work.");
     }
   }
 
@@ -160,6 +162,7 @@ class Page {
       hasPose: this.frame?.pose != null,
       headingKnown: this.frame?.pose?.headingKnown ?? false,
       notice: this.session?.notice ?? null,
+      health: this.session?.health ?? {},
       model: this.model,
       asked: this.asked,
     });
@@ -200,7 +203,7 @@ class Page {
   private ask(request: Request): void {
     this.requests += 1;
     if (!this.link?.send({ type: "control", request_id: `v${this.requests}`, ...request }))
-      this.hud.complain("There is no connection just now.");
+      this.hud.announce("There is no connection just now.");
   }
 
   private controls(): void {

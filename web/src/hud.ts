@@ -49,8 +49,8 @@ export class Hud {
     tell(this.notice, sentenceFor(situation));
   }
 
-  /** Show an error for a few seconds. */
-  complain(text: string): void {
+  /** Show an error, or news, for a few seconds. */
+  announce(text: string): void {
     tell(this.toast, text);
     window.clearTimeout(this.toastTimer);
     this.toastTimer = window.setTimeout(() => tell(this.toast, null), 6000);

@@ -24,6 +24,15 @@ export interface Session {
   readonly playback: Playback | null;
   readonly anchor: "site" | "here";
   readonly notice: string | null;
+  /** How a live rig's sensors are, by name; empty for a replay. */
+  readonly health: Readonly<Record<string, SensorHealth>>;
+}
+
+export interface SensorHealth {
+  /** Whether somebody should do something. */
+  readonly trouble: boolean;
+  /** What is the matter and what to do; or that all is well. */
+  readonly sentence: string;
 }
 
 export interface Reply {
@@ -87,7 +96,19 @@ export function parseSession(value: unknown): Session {
     playback: kind === "live" ? null : parsePlayback(session["playback"]),
     anchor: session["anchor"] === "here" ? "here" : "site",
     notice: typeof session["notice"] === "string" && session["notice"] !== "" ? session["notice"] : null,
+    health: parseHealth(session["health"]),
   };
+}
+
+/** Read how sensors are; what is not that is left out. */
+function parseHealth(value: unknown): Readonly<Record<string, SensorHealth>> {
+  if (typeof value !== "object" || value === null || Array.isArray(value)) return {};
+  const sensors = Object.entries(value as Fields).flatMap(([name, sensor]): [string, SensorHealth][] => {
+    if (typeof sensor !== "object" || sensor === null) return [];
+    const { trouble, sentence } = sensor as Fields;
+    return typeof sentence === "string" ? [[name, { trouble: trouble === true, sentence }]] : [];
+  });
+  return Object.fromEntries(sensors);
 }
 
 /** Read the list of `GET /api/sessions`, in the server's order. */

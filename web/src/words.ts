@@ -2,6 +2,8 @@
  * What the page says to a visitor: one plain sentence, and the numbers in words and units. Pure.
  */
 
+import type { SensorHealth } from "./protocol";
+
 export type Connection = "connecting" | "open" | "lost" | "refused" | "no session";
 
 export interface Situation {
@@ -18,6 +20,8 @@ export interface Situation {
   readonly asked: string | null;
   /** The server's own notice, if any. */
   readonly notice: string | null;
+  /** How a live rig's sensors are, by name. */
+  readonly health: Readonly<Record<string, SensorHealth>>;
   readonly model: "loading" | "shown" | "failed";
 }
 
@@ -32,12 +36,32 @@ export function sentenceFor(s: Situation): string | null {
   if (s.connection === "connecting") return s.sinceOpened_ms > QUIET_AFTER_MS ? "Connecting to the walk …" : null;
   if (s.sincePicture_ms === null && s.sinceOpened_ms > QUIET_AFTER_MS) return noPictures(s);
   if (s.sincePicture_ms !== null && s.sincePicture_ms > QUIET_AFTER_MS && s.playing) return noPictures(s);
+  const trouble = Object.values(s.health).find((sensor) => sensor.trouble);
+  if (trouble) return trouble.sentence;
   if (s.model === "failed") return MODEL_FAILED;
   if (s.sincePicture_ms !== null && !s.hasPose)
     return "Finding out where you are: the square appears when the position is known.";
   if (s.hasPose && !s.headingKnown) return "Walk a few steps so that I can find north.";
   if (s.model === "loading" && s.sinceOpened_ms > QUIET_AFTER_MS) return "The square is on its way …";
   return s.notice;
+}
+
+const SENSORS: Readonly<Record<string, string>> = {
+  gps: "The GPS receiver",
+  imu: "The inertial unit",
+  camera: "The camera",
+};
+
+/** Return what has happened to a rig's sensors between two states, or null: a trouble in its own words, or that one is back. */
+export function newsOf(
+  before: Readonly<Record<string, SensorHealth>>,
+  now: Readonly<Record<string, SensorHealth>>,
+): string | null {
+  for (const [name, sensor] of Object.entries(now)) {
+    if (sensor.trouble && !before[name]?.trouble) return sensor.sentence;
+    if (!sensor.trouble && before[name]?.trouble) return `${SENSORS[name] ?? `The ${name}`} is back.`;
+  }
+  return null;
 }
 
 /** Said on both pages. */
@@ -50,6 +74,8 @@ function noSession(asked: string | null): string {
 }
 
 function noPictures(s: Situation): string {
+  const camera = s.health["camera"];
+  if (camera?.trouble) return camera.sentence;
   if (s.kind === "live") return "No pictures are arriving: is the rig running?";
   return s.playing ? "No pictures here: this part of the recording has none." : "Press play to start the walk.";
 }
