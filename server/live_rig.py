@@ -225,7 +225,7 @@ class LiveRig:
 
 
 def health_of(state: WalkState) -> dict[str, Any]:
-    """Return how the sensors are, for whoever watches: no serial number, no file, nothing but what a page says."""
+    """Return how the sensors are, for whoever watches."""
     return {
         name: {
             "state": health.state.value,
