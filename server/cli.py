@@ -20,6 +20,7 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 from assets.errors import AssetError
 from assets.site import Site, load_site
 from server import live_commands, options
+from server.calibrating.commands import calibrate
 from server.errors import ServerError
 from server.options import (
     WEB,
@@ -50,6 +51,7 @@ app = typer.Typer(
 app.command()(live_commands.walk)
 app.command()(live_commands.track)
 app.command()(live_commands.record)
+app.add_typer(calibrate, name="calibrate")
 out = Console(highlight=False)
 err = Console(stderr=True, highlight=False)
 

@@ -7,6 +7,7 @@ ServerError
 ├── UnknownSession       no session of that name
 ├── ServerFull           as many viewers or sessions as the server will take
 ├── LinkRefused          a server will not have this rig: wrong token, or another rig took the session
+├── SensorMissing        a sensor that a calibration needs is not there (the command line exits 3)
 └── ConsoleUnavailable   the operator's console cannot start; everything else goes on without it
 """
 
@@ -41,3 +42,9 @@ class LinkRefused(ServerError):
 
 class ConsoleUnavailable(ServerError):
     """The operator's console cannot start."""
+
+
+class SensorMissing(ServerError):
+    """A live sensor is not there or says nothing."""
+
+    exit_code = 3
