@@ -148,6 +148,7 @@ def evaluate(
         bool,
         typer.Option("--ground", help="The walks were on the site's ground as it is modelled: precise measures by it."),
     ] = False,
+    look_again: LookAgain = False,
     eyes: Eyes = None,
     site: SiteFolder = SITE,
 ) -> None:
@@ -172,6 +173,7 @@ def evaluate(
             settings,
             (lambda result: traces.append(trace_of(result))) if report is not None else (lambda result: None),
             place if ground else None,
+            look_again=look_again,
         )
     if json_file is not None:
         write_json(evaluation, json_file)

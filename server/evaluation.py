@@ -42,6 +42,8 @@ def evaluate(
     settings: Settings | None = None,
     each: Callable[[Run], None] = lambda result: None,
     ground: Site | None = None,
+    *,
+    look_again: bool = False,
 ) -> Evaluation:
     """Run every log through every estimator (none named: all) that its sensors allow.
 
@@ -53,6 +55,7 @@ def evaluate(
         settings: None for the defaults.
         each: Given every run as it ends, for what needs more of it than its figures.
         ground: The site on whose ground the walks were; None where no ground is known.
+        look_again: Look at the pictures anew where a log holds what the live front end had made of them.
 
     Raises:
         InputError: A log cannot be read or was not on that ground, an estimator does not exist, or nothing could be run.
@@ -76,6 +79,7 @@ def evaluate(
                 settings,
                 progress=lambda done, label=label: progress(label, done),  # type: ignore[misc]
                 eyes_z_m=eyes_z_m,
+                look_again=look_again,
             )
             evaluation.runs.append(figures(result))
             each(result)
