@@ -40,6 +40,8 @@ from tracker.precise.timeline import Keyframe, Timed
 from tracker.rig import Rig
 
 _I3 = np.eye(3)
+#: Who has been so far from where the receiver was first has walked: then motion tells north.
+_WALKED_M = 6.0
 #: Pictures held for those to come.
 _HELD = 2
 
@@ -81,6 +83,13 @@ class Engine:
         self._compass_due_ns = 0
         self._suspicion = 0.0
         self.heading_found = False
+        self._first_fix_m: Vector3 | None = None
+        self._has_walked = False
+
+    @property
+    def _tells_north(self) -> bool:
+        """Whether standing and fixes may: of a rig that has not walked they would tell something, a little, again and again."""
+        return self._has_walked or float(self.best.covariance[8, 8]) < self._settings.heading_known_rad**2
 
     @property
     def age_s(self) -> float:
@@ -201,7 +210,10 @@ class Engine:
             sigma = settings.still_sigma_m_s + 0.1 * hypot(*activity.gyro_mean_rad_s)
             hypotheses.correct(
                 lambda f: f.correct(
-                    *observations.velocity(f, (0.0, 0.0, 0.0)), sigma**2 * _I3, gated=not self._is_blind(t_ns)
+                    *observations.velocity(f, (0.0, 0.0, 0.0)),
+                    sigma**2 * _I3,
+                    gated=not self._is_blind(t_ns),
+                    tells_north=self._tells_north,
                 )
             )
             if activity.is_still:
@@ -209,7 +221,11 @@ class Engine:
                 hypotheses.correct(lambda f: f.correct(*observations.turn_rate(f, activity.gyro_mean_rad_s), noise))
         elif self._is_blind(t_ns):
             expected, noise = self._stride.onward(activity.force_spread_m_s2, settings)
-            hypotheses.correct(lambda f: f.correct(*observations.velocity(f, expected), noise, gated=False))
+            hypotheses.correct(
+                lambda f: f.correct(
+                    *observations.velocity(f, expected), noise, gated=False, tells_north=self._tells_north
+                )
+            )
         else:
             self._stride.learn(activity.force_spread_m_s2, self.best.nav.v_m_s)
         self._stand_on_ground()
@@ -234,8 +250,11 @@ class Engine:
             self._find_heading()
         white = 1.0 - sum(settings.gps_error_share)
         noise = np.diag([max(white, 0.02) * s * s for s in sigma])
+        self._note_way(p)
         done = hypotheses.correct(
-            lambda f: f.correct(*observations.gps_position(f, p, sigma, self._lever_gps_m), noise)
+            lambda f: f.correct(
+                *observations.gps_position(f, p, sigma, self._lever_gps_m), noise, tells_north=self._tells_north
+            )
         )
         self.fix_ns = fix.t_ns
         if is_first:
@@ -248,10 +267,16 @@ class Engine:
                 filter_.place(p)
                 filter_.correct(*observations.gps_position(filter_, p, sigma, self._lever_gps_m), noise)
 
+    def _note_way(self, p_site_m: Vector3) -> None:
+        self._first_fix_m = self._first_fix_m or p_site_m
+        x, y, _ = self._first_fix_m
+        self._has_walked |= hypot(p_site_m[0] - x, p_site_m[1] - y) > _WALKED_M
+
     def _take_velocity(self, measured: GpsVelocity) -> None:
         hypotheses, last = self.hypotheses, self._last
         assert hypotheses is not None
         assert last is not None
+        self._has_walked = True  # or stands, as far as can be told: a velocity is better evidence than a way
         sigma = self._settings.gps_velocity_sigma_m_s
         noise = np.diag([sigma**2, sigma**2, (1.5 * sigma) ** 2])
         done = hypotheses.correct(

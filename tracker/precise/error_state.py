@@ -44,6 +44,8 @@ Blocks: TypeAlias = Sequence[tuple[slice, Matrix]]
 Observation: TypeAlias = tuple[Matrix, Blocks]
 """Residual, measured minus predicted, (m,), and its H."""
 _ITERATIONS = 5
+#: Yaw, and the bias, scale and lean of the gyroscope's z.
+_NORTH = [8, 11, 31, 32, 33]
 
 
 @dataclass
@@ -149,6 +151,7 @@ class ErrorState:
         noise: Matrix,
         *,
         gated: bool = True,
+        tells_north: bool = True,
     ) -> Correction:
         """Take a measurement in, in Joseph's form.
 
@@ -157,6 +160,11 @@ class ErrorState:
             blocks: Columns of H that are not zero, each (m, width of the slice).
             noise: (m, m) covariance of the measurement.
             gated: Whether what lies far out counts for less (Huber), and further out for nothing.
+            tells_north: Whether it may tell yaw, now and of what is held, and what is wrong with the gyroscope's z; else their
+                doubt is taken into account, and they stay as they are.
+
+        Reference:
+            Schmidt, Application of state-space methods to navigation problems, 1966 (considered states).
         """
         self.settle()
         m, cov = len(residual), self.covariance
@@ -170,6 +178,9 @@ class ErrorState:
             noise = noise * (nis / self.settings.gate_nis) + foreseen * (nis / self.settings.gate_nis - 1.0)
         S = foreseen + noise
         K = np.asarray(np.linalg.solve(S, PHt.T).T, np.float64)
+        if not tells_north:
+            K[_NORTH] = 0.0
+            K[SIZE + 5 :: 6] = 0.0
         self.covariance = _joseph(cov, K, H, noise)
         self.move(K @ residual)
         return Correction(nis, _log_likelihood(min(nis, self.settings.reject_nis), S), used=True)

@@ -1,7 +1,10 @@
 """What a picture says of the filter's state: how far its camera has turned since a held one, and which way it went."""
 
+from math import hypot
+
 import numpy as np
 
+from tracker.geometry import log, wxyz_from_matrix
 from tracker.measurements import Vector3, VisualMotion
 from tracker.precise import observations
 from tracker.precise.error_state import Correction, ErrorState
@@ -31,7 +34,8 @@ class Eye:
             return None
         settings, parallax_px = self._settings, motion.parallax_px
         doubt = settings.vision_mixed * parallax_px / (1.0 + (parallax_px / 2.0) ** 2)
-        sigma = settings.vision_rotation_rad * (1.0 + doubt)
+        turned_rad = hypot(*log(wxyz_from_matrix(motion.R_key_cam)))
+        sigma = hypot(settings.vision_rotation_rad * (1.0 + doubt), settings.vision_scale * turned_rad)
         seen = observations.rotation_to_clone(filter_, index, motion.R_key_cam, self._R_body_cam)
         return filter_.correct(*seen, sigma**2 * np.eye(3))
 

@@ -73,6 +73,8 @@ class PreciseSettings:
     """and how many times it says the same in a quarter of a second each: its error does not average out."""
     vision_rotation_rad: float = 0.004
     """Of a picture against a held one. Those of one held picture share its error: each counts for less than it is worth."""
+    vision_scale: float = 0.05
+    """Of a rotation, as its share: what the focal length may be off by."""
     vision_mixed: float = 6.0
     """How much worse it is, per pixel, where a parallax of about two pixels leaves open what is turn and what is travel: beside
     a wall a share of the travel is taken for a turn, always the same way."""

@@ -45,8 +45,8 @@ _SOURCES = (
 def units(scenario: str, wanted: Sequence[str] = ()) -> list[str]:
     """Return what is run in a scenario; `wanted` chooses by name or by a part of it between slashes, nothing for all."""
     known = [*BOTH]
-    known += [RAW, *PAPER] if scenario in COMPARED else []
-    known += RIVALS if scenario in RIVALLED else []
+    known += [RAW] if scenario in COMPARED else []
+    known += [*PAPER, *RIVALS] if scenario in RIVALLED else []
     return [unit for unit in known if not wanted or {unit, *unit.split("/")} & set(wanted)]
 
 
