@@ -1,6 +1,6 @@
 """Where a calibration's measurements come from: a recording, a video, a folder of photographs, or live sensors."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from queue import Empty, Queue
@@ -138,18 +138,17 @@ class PictureFeed:
 
 @dataclass
 class LiveFeed:
-    """Sensors that are here now, read for so long, or until `enough` says so."""
+    """Sensors that are here now, read for so long, or until the reader has had enough."""
 
     sources: Sequence[Source]
     rig: Rig
     seconds: float
-    enough: Callable[[], bool] = lambda: False
     _devices: dict[str, tuple[str, str]] = field(default_factory=dict)
     _fix: GpsFix | None = None
 
     is_live = True
 
-    def measurements(self, progress: Progress) -> Iterator[Measurement]:
+    def measurements(self, progress: Progress) -> Generator[Measurement, None, None]:
         """Yield what they say, from when all of them have begun.
 
         Raises:
@@ -169,6 +168,7 @@ class LiveFeed:
         try:
             yield from self._read(queue, progress)
         finally:
+            self._note_devices()  # while they are attached, and also where the reader has had enough
             for thread in threads:
                 thread.stop()
             for thread in threads:
@@ -202,8 +202,7 @@ class LiveFeed:
                 self._fix = item
             progress("listening", min(1.0, (now_s - begin_s) / self.seconds))
             yield item
-            if now_s - begin_s >= self.seconds or self.enough():
-                self._note_devices()
+            if now_s - begin_s >= self.seconds:
                 return
 
     def _note_devices(self) -> None:

@@ -199,6 +199,8 @@ def without_password(address: str) -> str:
 
 def open_with_opencv(spec: str, settings: CameraSettings) -> Capture:
     """Open a device by V4L2, or a stream by FFmpeg, both with a limit on how long a read may take."""
+    # what it would print on its own, about a camera that is not there, the source says better
+    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_ERROR)
     wait_ms = max(1, round(settings.silent_s * 1e3))
     if urlsplit(spec).scheme in _SCHEMES:
         limits = [cv2.CAP_PROP_OPEN_TIMEOUT_MSEC, wait_ms, cv2.CAP_PROP_READ_TIMEOUT_MSEC, wait_ms]

@@ -44,9 +44,11 @@ def mag(i: int) -> Measurement:
 def test_what_all_of_them_say_is_heard_and_everything_stops() -> None:
     sources = [Said("imu", imu), Said("mag", mag)]
     heard: list[Measurement] = []
-    feed = LiveFeed(sources, Rig(), 60.0, enough=lambda: len(heard) >= 50)
-    for measurement in feed.measurements(lambda what, share: None):
-        heard.append(measurement)
+    feed = LiveFeed(sources, Rig(), 60.0)
+    measurements = feed.measurements(lambda what, share: None)
+    while len(heard) < 50:
+        heard.append(next(measurements))
+    measurements.close()
     assert {type(measurement) for measurement in heard} == {ImuSample, MagSample}
     assert all(source.stopped for source in sources)
     assert feed.device("imu") == ("The imu", "7")
