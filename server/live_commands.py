@@ -177,6 +177,10 @@ def _follow(walking: "Walking", stop: Event, as_json: bool) -> None:
             walking.check()
             if live is not None:
                 shown = screen(
-                    walking.state, estimator=walking.rig.estimator, connected=walking.connected, url=walking.url
+                    walking.state,
+                    estimator=walking.rig.estimator,
+                    connected=walking.connected,
+                    url=walking.url,
+                    refused=walking.refused,
                 )
                 live.update(shown, refresh=True)

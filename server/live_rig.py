@@ -20,10 +20,11 @@ from tracker.blank import CAMERA
 from tracker.errors import MalformedInput, MissingSensor
 from tracker.estimator import Pose
 from tracker.estimators import check_name, missing_sensors
+from tracker.lens import scaled
 from tracker.measurements import Frame, GpsFix, Measurement
 from tracker.pipeline import Pipeline
 from tracker.playback import Shown
-from tracker.rig import Rig, guessed_camera
+from tracker.rig import CameraModel, Rig, guessed_camera
 from tracker.running.core import WalkCore
 from tracker.running.health import SensorState
 from tracker.running.recorder import Recorder, as_read, recorded
@@ -100,6 +101,7 @@ class LiveRig:
         self._console = console
         self._link: RigLink | None = None
         self._presenter: Presenter | None = None
+        self._misfit: str | None = None
         self._told: tuple[SensorState, ...] = ()
         self._health_due_ns = 0
 
@@ -178,6 +180,8 @@ class LiveRig:
         fix, origin = self._first_fix, self._placing.site_origin
         if self._placing.anchor == "site" and fix is not None and (away_m := distance_m(fix, origin)) > FAR_M:
             return f"This rig is {away_m / 1000.0:,.0f} km from the site: start it with --anchor here."
+        if self._misfit is not None:
+            return self._misfit
         if not self._has_camera:
             return "This rig has no camera: the square is drawn over an empty picture."
         if self._rig.camera is None:
@@ -203,15 +207,28 @@ class LiveRig:
     def _make_presenter(self, first: Frame) -> Presenter | None:
         """Return what sends pictures, once the first one has shown how large they are."""
         assert self._link is not None
-        rig = self._rig if self._has_camera else replace(self._rig, camera=CAMERA)
-        if rig.camera is None:
-            try:
-                height_px, width_px = first.picture.gray().shape
-            except MalformedInput:
-                return None
-            rig = replace(rig, camera=guessed_camera(width_px, height_px))
-        self._presenter = Presenter(self._link, rig, self._console)
+        try:
+            height_px, width_px = first.picture.gray().shape
+        except MalformedInput:
+            return None
+        self._presenter = Presenter(
+            self._link, replace(self._rig, camera=self._lens(width_px, height_px)), self._console
+        )
         return self._presenter
+
+    def _lens(self, width_px: int, height_px: int) -> CameraModel:
+        """Return the lens for pictures of a size: as calibrated, scaled, or guessed."""
+        camera = self._rig.camera if self._has_camera else CAMERA
+        if camera is None:
+            return guessed_camera(width_px, height_px)
+        if (camera.width_px, camera.height_px) == (width_px, height_px):
+            return camera
+        if abs(camera.width_px * height_px - camera.height_px * width_px) > 0.01 * camera.width_px * height_px:
+            self._misfit = (
+                f"The camera gives {width_px}x{height_px} pixels and was calibrated at {camera.width_px}x{camera.height_px}: "
+                "calibrate it anew, the square does not fit."
+            )
+        return scaled(camera, width_px, height_px)
 
     def _tell_health(self) -> None:
         if self._link is None:

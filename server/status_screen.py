@@ -16,11 +16,12 @@ from tracker.running.walk import WalkState
 _STYLES: Mapping[SensorState, str] = {SensorState.WAITING: "yellow", SensorState.STREAMING: "green"}
 
 
-def as_json(state: WalkState, *, estimator: str, connected: bool | None) -> dict[str, Any]:
-    """Return everything; `connected` is None where there is no server to connect to."""
+def as_json(state: WalkState, *, estimator: str, connected: bool | None, refused: str | None = None) -> dict[str, Any]:
+    """Return everything; `connected` is None where there is no server to connect to, `refused` why it will not have this rig."""
     return {
         "estimator": estimator,
         "connected": connected,
+        "refused": refused,
         "pose": None if state.pose is None else _pose(state.pose),
         "poses_hz": round(state.poses_hz, 1),
         "vision_hz": round(state.looks_hz, 1),
@@ -37,13 +38,17 @@ def as_json(state: WalkState, *, estimator: str, connected: bool | None) -> dict
     }
 
 
-def screen(state: WalkState, *, estimator: str, connected: bool | None, url: str | None) -> RenderableType:
+def screen(
+    state: WalkState, *, estimator: str, connected: bool | None, url: str | None, refused: str | None = None
+) -> RenderableType:
     """Return the screen."""
     sensors = Table(box=None, padding=(0, 2, 0, 0), show_header=False)
     for name, health in state.sensors.items():
         style = _STYLES.get(health.state, "bold red")
         sensors.add_row(Text(name), Text(health.state.value, style=style), Text(health.sentence))
-    if connected is not None:
+    if refused is not None:
+        sensors.add_row(Text("server"), Text("refused", style="bold red"), Text(f"{refused} Tracking goes on."))
+    elif connected is not None:
         words = ("connected", "green") if connected else ("away", "bold red")
         told = "The server is there." if connected else "The server is away: tracking goes on, and it is asked again."
         sensors.add_row(Text("server"), Text(*words), Text(told))

@@ -129,13 +129,19 @@ class Walking:
         return None if self.rig.link is None else self.rig.link.connected
 
     @property
+    def refused(self) -> str | None:
+        """Why the server will not have this rig, where it will not: nobody asks it again."""
+        link = self.rig.link
+        return None if link is None or link.refused is None else str(link.refused)
+
+    @property
     def state(self) -> WalkState:
         """How it is now."""
         return self.rig.state
 
     def as_json(self) -> dict[str, object]:
         """Return how it is now, for programs."""
-        return as_json(self.state, estimator=self.rig.estimator, connected=self.connected)
+        return as_json(self.state, estimator=self.rig.estimator, connected=self.connected, refused=self.refused)
 
     def check(self) -> None:
         """Raise what ended the tracker, if anything did."""

@@ -134,6 +134,9 @@ def test_the_screen_says_what_is_amiss() -> None:
         "Lost, since fusion was behind",
     ):
         assert words in text
+    turned_away = state(SensorState.STREAMING, None)
+    console.print(screen(turned_away, estimator="e", connected=False, url=None, refused="The server refused this rig."))
+    assert "The server refused this rig. Tracking goes on." in console.export_text()
     console.print(screen(state(SensorState.STREAMING, None), estimator="", connected=None, url="http://h/"))
     text = console.export_text()
     assert "Nothing is tracked" in text

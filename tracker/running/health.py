@@ -173,7 +173,8 @@ class Watch:
         if self._failed is not None:
             return SensorState.FAILED, f"cannot be used: {_clause(self._failed)}."
         if self._lost is not None:
-            return SensorState.LOST, f"is gone: {_clause(self._lost)}. It is looked for again and again."
+            what = "is gone" if self._count else "is not there"
+            return SensorState.LOST, f"{what}: {_clause(self._lost)}. It is looked for again and again."
         if status is not None and not status.attached and self._is_unplugged(now_ns):
             return SensorState.LOST, f"is not there: {_clause(status.detail)}."
         if self._newest_ns is None:

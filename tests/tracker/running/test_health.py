@@ -66,6 +66,13 @@ def test_a_lost_sensor_is_lost_until_it_speaks_again() -> None:
     assert watch.read(4 * S).state is SensorState.STREAMING
 
 
+def test_a_sensor_that_was_never_there_is_not_gone() -> None:
+    """It is looked for all the same."""
+    watch = Watch("gps", 0)
+    watch.lost("no PhidgetGPS was found: plug it in.")
+    assert watch.read(S).sentence.startswith("The GPS receiver is not there: no PhidgetGPS was found")
+
+
 def test_a_source_that_waits_for_its_device_says_so_itself() -> None:
     """It need not end for that: some libraries wait for the plug by themselves."""
     watch = _streaming("gps", 2.0)

@@ -1,0 +1,140 @@
+"""A live rig as its viewers see it: pictures with poses, what is said of it, and what they may not ask for."""
+
+import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from websockets.sync.connection import Connection
+
+from server.live_rig import LiveRig
+from server.placing import Placing
+from server.wire import FrameMeta, decode_frame, is_frame
+from tests.server.serving import TOKEN, serving, text_of, until, viewer
+from tests.walks import write_walk
+from tracker.errors import MissingSensor, UnknownEstimator
+from tracker.estimator import Origin
+from tracker.log import Log
+from tracker.rig import CameraModel, Rig
+from tracker.simulate import AGORA_ORIGIN
+from tracker.sources.played import Played
+
+PLACING = Placing(AGORA_ORIGIN, lambda e, n: 0.0, lambda e, n: 1.65, 1.65)
+ELSEWHERE = Origin(-43.5, 172.6, 20.0)
+
+
+@pytest.fixture(scope="module")
+def wall(tmp_path_factory: pytest.TempPathFactory) -> Log:
+    """A minute with pictures of 640 x 480."""
+    return Log.open(write_walk(tmp_path_factory.mktemp("logs") / "wall.mcap", 60.0, pictures=True))
+
+
+@contextmanager
+def watching(
+    log: Log,
+    folder: Path,
+    names: tuple[str, ...] = ("gps", "imu", "camera"),
+    placing: Placing = PLACING,
+    **options: Any,
+) -> Iterator[Connection]:
+    """Watch a rig on a server of its own."""
+    played = Played(log)
+    rig = LiveRig([played.source(name) for name in names], options.pop("rig", log.rig), placing, **options)
+    with serving(folder) as server:
+        rig.start(server.rig_url("walk"), TOKEN)
+        try:
+            until(lambda: rig.link is not None and rig.link.connected)
+            with viewer(server) as connection:
+                yield connection
+        finally:
+            rig.close()
+
+
+def frame_where(connection: Connection, condition: Callable[[FrameMeta], bool]) -> FrameMeta:
+    """Return the next frame of which something is true; all are acknowledged."""
+    while True:
+        message = connection.recv(10.0)
+        if isinstance(message, bytes) and is_frame(message):
+            meta, _ = decode_frame(message)
+            connection.send(json.dumps({"type": "ack", "frame_id": meta.frame_id}))
+            if condition(meta):
+                return meta
+
+
+def notice_of(connection: Connection, condition: Callable[[str | None], bool]) -> str | None:
+    """Return the first notice of which something is true."""
+    while True:
+        notice: str | None = text_of(connection, "state")["session"]["notice"]
+        if condition(notice):
+            return notice
+
+
+def test_pictures_come_with_poses_and_nothing_is_amiss(wall: Log, tmp_path: Path) -> None:
+    with watching(wall, tmp_path) as connection:
+        meta = frame_where(connection, lambda meta: meta.pose_valid)
+        assert meta.estimator == "camera-gps-imu/precise"
+        assert wall.rig.camera is not None
+        assert meta.camera.fx_px == wall.rig.camera.fx_px
+        session = text_of(connection, "state")["session"]
+        assert (session["kind"], session["notice"], session["playback"]) == ("live", None, None)
+        assert {name: one["trouble"] for name, one in session["health"].items()} == dict.fromkeys(
+            ("gps", "imu", "camera"), False
+        )
+
+
+def test_a_live_walk_cannot_be_paused(wall: Log, tmp_path: Path) -> None:
+    with watching(wall, tmp_path) as connection:
+        connection.send(json.dumps({"type": "control", "request_id": "p", "action": "pause"}))
+        reply = text_of(connection, "reply")
+        assert not reply["ok"]
+        assert "live" in reply["error"]
+
+
+def test_pictures_of_another_size_are_drawn_through_the_scaled_lens(wall: Log, tmp_path: Path) -> None:
+    """And of another shape it is said that the square does not fit."""
+    half = CameraModel(320, 240, 260.0, 260.0, 159.5, 119.5)
+    with watching(wall, tmp_path, rig=replace(wall.rig, camera=half)) as connection:
+        meta = frame_where(connection, lambda meta: True)
+        assert (meta.camera.width_px, meta.camera.fx_px, meta.camera.cx_px) == (640, 520.0, 319.5)
+    wide = CameraModel(1280, 720, 900.0, 900.0, 639.5, 359.5)
+    with watching(wall, tmp_path, rig=replace(wall.rig, camera=wide)) as connection:
+        assert "calibrate it anew" in str(notice_of(connection, lambda notice: notice is not None))
+
+
+def test_a_camera_that_was_never_calibrated_is_guessed_and_said_so(wall: Log, tmp_path: Path) -> None:
+    with watching(wall, tmp_path, rig=Rig()) as connection:
+        meta = frame_where(connection, lambda meta: True)
+        assert meta.estimator == "gps-imu/precise"
+        assert meta.camera.fx_px == pytest.approx(0.87 * 640)
+        assert "never calibrated" in str(notice_of(connection, lambda notice: notice is not None))
+
+
+def test_without_a_camera_the_square_is_drawn_over_an_empty_picture(wall: Log, tmp_path: Path) -> None:
+    with watching(wall, tmp_path, names=("gps", "imu")) as connection:
+        meta = frame_where(connection, lambda meta: meta.pose_valid)
+        assert (meta.camera.width_px, meta.camera.height_px) == (640, 480)
+        assert "no camera" in str(notice_of(connection, lambda notice: notice is not None))
+
+
+def test_elsewhere_the_walk_says_how_to_see_the_square(tmp_path: Path) -> None:
+    log = Log.open(write_walk(tmp_path / "far.mcap", 20.0, origin=ELSEWHERE))
+    with watching(log, tmp_path, names=("gps", "imu")) as connection:
+        assert "--anchor here" in str(notice_of(connection, lambda notice: notice is not None and " km " in notice))
+    with watching(log, tmp_path, ("gps", "imu"), replace(PLACING, anchor="here")) as connection:
+        meta = frame_where(connection, lambda meta: meta.pose_valid)
+        assert np.hypot(*meta.T_site_cam[:2, 3]) < 6.0
+        assert meta.T_site_cam[2, 3] == pytest.approx(1.65, abs=0.2)
+
+
+def test_what_no_estimator_can_do_is_refused_before_anything_starts(wall: Log) -> None:
+    played = Played(wall)
+    with pytest.raises(MissingSensor, match="no IMU"):
+        LiveRig([played.source("gps")], wall.rig, PLACING)
+    with pytest.raises(MissingSensor, match="no GPS"):
+        LiveRig([played.source("imu")], wall.rig, PLACING, estimator="gps-imu/famm")
+    with pytest.raises(UnknownEstimator):
+        LiveRig([played.source("imu")], wall.rig, PLACING, estimator="nonsense")
