@@ -7,12 +7,13 @@ from typing import Literal
 import numpy as np
 
 from server.calibrating.feed import Feed, Progress
-from server.calibrating.result import Result, today
+from server.calibrating.lens_run import result_of as lens_result
+from server.calibrating.result import Result, joined, today
 from server.plots.mount import mount_pictures
 from server.plots.style import Picture
 from tracker.calibrate.board import Board, BoardView
 from tracker.calibrate.board_turns import board_turns
-from tracker.calibrate.camera_lens import fit_lens
+from tracker.calibrate.camera_lens import LensFit, fit_lens
 from tracker.calibrate.camera_mount import (
     LEAST_PAIRS,
     CameraMount,
@@ -22,7 +23,7 @@ from tracker.calibrate.camera_mount import (
 )
 from tracker.calibrate.flow import Flow
 from tracker.calibrate.gyro_track import GyroTrack
-from tracker.calibrate.turns import PointPair
+from tracker.calibrate.turns import PointPair, Turns
 from tracker.errors import InputError, MalformedInput
 from tracker.lens import scaled
 from tracker.measurements import Frame, ImuSample
@@ -79,9 +80,13 @@ def calibrate_rig(feed: Feed, rig_file: RigFile, board: Board, progress: Progres
     track = GyroTrack.of(gathered.samples, t_zero_ns)
     size_px = gathered.flow.size_px
     known, stated = _known_lens(rig_file, size_px), _stated_lens(feed, size_px)
-    mount = _by_board(gathered, track, t_zero_ns, known, stated, progress)
-    if mount is not None:
-        return _result(mount, None, feed, rig_file, by="board")
+    if len(gathered.views) >= max(LEAST_PAIRS, 0.3 * gathered.flow.pictures):
+        fit = None if known is not None else _lens_by_board(gathered, progress)
+        lens = known or (stated if fit is None else fit.camera)
+        turns = None if lens is None else _turns_by_board(gathered, lens, t_zero_ns, progress)
+        if lens is not None and turns is not None:
+            result = _result(find_mount_by_board(track, turns, lens), None, feed, rig_file, by="board")
+            return result if fit is None else joined(lens_result(fit, feed.device("camera")), result)
 
     def by_flow(camera: CameraModel, what: str, *, focal_is_free: bool) -> CameraMount:
         return find_mount_by_flow(
@@ -121,26 +126,18 @@ def _stated_lens(feed: Feed, size_px: tuple[int, int]) -> CameraModel | None:
     return camera if camera is not None and (camera.width_px, camera.height_px) == size_px else None
 
 
-def _by_board(
-    gathered: _Gathered,
-    track: GyroTrack,
-    t_zero_ns: int,
-    known: CameraModel | None,
-    stated: CameraModel | None,
-    progress: Progress,
-) -> CameraMount | None:
-    """Return the mount by the board; None where it is in too few pictures, or nothing tells the lens."""
-    if len(gathered.views) < max(LEAST_PAIRS, 0.3 * gathered.flow.pictures):
+def _lens_by_board(gathered: _Gathered, progress: Progress) -> LensFit | None:
+    """Return the lens as the same views of the board tell it; None where they are too few or too much alike."""
+    try:
+        return fit_lens(gathered.views, gathered.board, lambda what: progress(what, 0.0))
+    except InputError:
         return None
-    if known is None:
-        try:
-            known = fit_lens(gathered.views, gathered.board, lambda what: progress(what, 0.0)).camera
-        except InputError:
-            known = stated
-    if known is None:
-        return None
-    turns = board_turns(gathered.views, gathered.board, known, t_zero_ns, lambda share: progress("comparing", share))
-    return find_mount_by_board(track, turns, known) if len(turns.times_s) >= LEAST_PAIRS else None
+
+
+def _turns_by_board(gathered: _Gathered, lens: CameraModel, t_zero_ns: int, progress: Progress) -> Turns | None:
+    """Return the turns before the board; None where they are too few."""
+    turns = board_turns(gathered.views, gathered.board, lens, t_zero_ns, lambda share: progress("comparing", share))
+    return turns if len(turns.times_s) >= LEAST_PAIRS else None
 
 
 def _result(

@@ -48,6 +48,18 @@ class Result:
         write_rig_file(path, replace(before, **self.sheets))
 
 
+def joined(first: Result, second: Result) -> Result:
+    """Return two calibrations from the same measurements as one, which bears the second's title."""
+    return Result(
+        second.title,
+        {**first.sheets, **second.sheets},
+        (*first.found, *second.found),
+        (*first.doubts, *second.doubts),
+        {**second.numbers, "lens": dict(first.numbers)},
+        lambda: (*first.pictures(), *second.pictures()),
+    )
+
+
 def today() -> date:
     """Return the day that a calibration is dated with."""
     return date.today()

@@ -18,6 +18,8 @@ class BoardWalk:
 
     seed: int
     rate_hz: float = 12.0
+    lively: bool = False
+    """Comes nearer, turns further, and so shows the board in every part of the picture: that tells the lens as well."""
 
     @property
     def video(self) -> BoardVideo:
@@ -27,7 +29,11 @@ class BoardWalk:
     @property
     def motion(self) -> RigMotion:
         """Turns that leave the board in the picture most of the time."""
-        return RigMotion(self.seed, 10.0, (0.3, 0.2, 0.25))
+        return (
+            RigMotion(self.seed, 15.0, (0.5, 0.35, 0.45))
+            if self.lively
+            else RigMotion(self.seed, 10.0, (0.3, 0.2, 0.25))
+        )
 
     @property
     def R_body_cam(self) -> Matrix:
@@ -49,7 +55,8 @@ class BoardWalk:
         frames = []
         for number, (t_s, R_start_body) in enumerate(zip(times_s.tolist(), attitudes, strict=True)):
             R_cam_first = (R.T @ R_start_body @ R).T
-            seen_m = np.array([0.05 * np.sin(t_s), 0.04 * np.cos(1.3 * t_s), 0.42 + 0.05 * np.sin(0.7 * t_s)])
+            sway = np.array([0.05 * np.sin(t_s), 0.04 * np.cos(1.3 * t_s), 0.05 * np.sin(0.7 * t_s)])
+            seen_m = np.array([0.0, 0.0, 0.33]) + 1.8 * sway if self.lively else np.array([0.0, 0.0, 0.42]) + sway
             R_cam_board = R_cam_first @ R_first_board
             place_m = R_cam_first @ seen_m - R_cam_board @ middle_m
             frames.append(video.frame(t_zero_ns + round(t_s * 1e9), R_cam_board, place_m, number))

@@ -22,9 +22,7 @@ def looked_at(video: BoardVideo, poses: Sequence[tuple[Matrix, Matrix]]) -> list
     return [view for view in views if view is not None]
 
 
-@pytest.mark.parametrize(
-    ("camera", "seed"), [(WEBCAM, 1), (WEBCAM, 2), (FISHEYE, 1)], ids=["webcam", "again", "fisheye"]
-)
+@pytest.mark.parametrize(("camera", "seed"), [(WEBCAM, 2), (FISHEYE, 1)], ids=["webcam", "fisheye"])
 def test_a_lens_is_recovered_within_half_a_percent(camera: CameraModel, seed: int) -> None:
     video = BoardVideo(camera, seed=seed)
     fit = fit_lens(looked_at(video, list(shown_around(video, 50))), video.board)
@@ -65,7 +63,7 @@ def never_slanted(rng: np.random.Generator) -> tuple[Matrix, Matrix]:
 def test_poor_views_are_refused(how: Callable[[np.random.Generator], tuple[Matrix, Matrix]], words: str) -> None:
     video, rng = BoardVideo(WEBCAM), np.random.default_rng(3)
     with pytest.raises(InputError, match=words):
-        fit_lens(looked_at(video, [how(rng) for _ in range(40)]), video.board)
+        fit_lens(looked_at(video, [how(rng) for _ in range(24)]), video.board)
 
 
 def test_a_board_that_is_held_still_is_refused() -> None:

@@ -165,15 +165,6 @@ def of_log(path: Path, every: int = 1) -> CameraMount:
     return find_mount_by_flow(track, pairs, samples[0].t_ns, unknown_camera(*flow.size_px), focal_is_free=True)
 
 
-def test_the_focal_length_of_a_phone_that_turned_once_round(shared: Path) -> None:
-    """../shared/data/README.md, trap 4: 478 px were fitted to the gyroscope on three pans (468, 481, 482)."""
-    mount = of_log(shared / "data" / "transformflow-1606.mcap")
-    assert mount.camera.fx_px == pytest.approx(478.0, rel=0.03)
-    assert mount.across > 0.9
-    assert mount.readout_s == pytest.approx(0.024, abs=0.004)
-    assert abs(mount.alignment.offset_s) < 0.02
-
-
 def test_a_roll_about_the_line_of_sight_is_known_for_one(shared: Path) -> None:
     """The other log is a roll: its few degrees of nod and pan give 453 px, five per cent short, and `across` says why."""
     mount = of_log(shared / "data" / "transformflow-avonhead-1611.mcap")
