@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from threading import Lock
 from typing import Any
 
 import cv2
@@ -42,23 +43,34 @@ class EncodedPicture:
         return np.asarray(picture, np.uint8)
 
 
-@dataclass(frozen=True, eq=False)
-class VideoPicture:
-    """A decoded video frame (an `av.VideoFrame`)."""
+#: Two threads that convert one frame at a time wait for each other for ever (measured on PyAV 18).
+_CONVERTING = Lock()
 
-    frame: Any
+
+class VideoPicture:
+    """A decoded video frame (an `av.VideoFrame`). Several threads may ask for it; the JPEG is made once."""
+
+    def __init__(self, frame: Any) -> None:
+        self._frame = frame
+        self._jpeg: bytes | None = None
 
     def gray(self) -> Image:
         """The picture as (height, width) uint8."""
-        return np.asarray(self.frame.to_ndarray(format="gray"), np.uint8)
+        return self._converted("gray")
 
     def bgr(self) -> Image:
         """The picture as (height, width, 3) uint8."""
-        return np.asarray(self.frame.to_ndarray(format="bgr24"), np.uint8)
+        return self._converted("bgr24")
 
     def jpeg(self) -> bytes:
         """The picture as JPEG."""
-        return encode_jpeg(self.bgr())
+        if self._jpeg is None:
+            self._jpeg = encode_jpeg(self.bgr())
+        return self._jpeg
+
+    def _converted(self, layout: str) -> Image:
+        with _CONVERTING:
+            return np.asarray(self._frame.to_ndarray(format=layout), np.uint8)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,5 +1,7 @@
 """H.264 there and back."""
 
+from threading import Thread
+
 import numpy as np
 
 from tracker.measurements import Image
@@ -51,3 +53,17 @@ def test_a_broken_unit_gives_no_picture_and_the_next_key_frame_does() -> None:
     assert list(decoder.decode(b"", 1)) == []
     assert not is_key(b"\x00\x00\x01")
     assert [number for number, _ in decoder.decode(units[20], 20)] == [20]
+
+
+def test_vision_recorder_and_show_may_look_at_one_picture_at_once() -> None:
+    """Left to itself the library waits for ever where two threads convert one frame."""
+    decoder = VideoDecoder()
+    for number, unit in enumerate(_encoded(100)):
+        ((_, picture),) = decoder.decode(unit, number)
+        looks = (picture.gray, picture.bgr, picture.jpeg)
+        threads = [Thread(target=look, daemon=True) for look in (*looks, *looks)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join(20.0)
+            assert not thread.is_alive()
