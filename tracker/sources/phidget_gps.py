@@ -68,8 +68,8 @@ class PhidgetGpsSource(PhidgetSource[_Said]):
     def _restart(self) -> None:
         self._fixes = NmeaFixes(self._counts, None)
         self._begun: tuple[int | None, int] | None = None
-        self._has_fix = False
-        self._t_epoch_ns = 0
+        self._has_fix = True  # until it says that it has none, or says nothing of it for too long
+        self._t_epoch_ns = self._clock_ns()
         self._utc_ns: int | None = None
 
     def _on_position(self, channel: Any, _lat_deg: float, _lon_deg: float, _h_msl_m: float) -> None:
@@ -115,7 +115,7 @@ class PhidgetGpsSource(PhidgetSource[_Said]):
     def _facts(self) -> Mapping[str, object]:
         clock = self._fixes.clock
         return {
-            "fix": QUALITIES[self._fixes.quality].words if self._has_fix else QUALITIES[_NOT_A_POSITION].words,
+            "fix": QUALITIES[self._fixes.quality if self._has_fix else _NOT_A_POSITION].words,
             "hdop": self._fixes.hdop,
             "satellites_used": self._fixes.satellites_used,
             "utc_time_of_day_s": None if self._utc_ns is None else self._utc_ns / 1e9,

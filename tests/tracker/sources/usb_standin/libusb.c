@@ -84,7 +84,8 @@ static int cancelled[TRANSFERS];
 static int pending_count;
 static int next_address = 7;
 static int context;
-static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER, waiters = PTHREAD_MUTEX_INITIALIZER;
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER, events = PTHREAD_MUTEX_INITIALIZER;
+static pthread_mutex_t waiters = PTHREAD_MUTEX_INITIALIZER;
 static pthread_cond_t changed = PTHREAD_COND_INITIALIZER;
 
 /* What a test does. */
@@ -382,21 +383,25 @@ static struct transfer *end_one(void) {
     return NULL;
 }
 
+/* Waits for one transfer to end and calls back; as with libusb, one thread at a time does so while others wait for it. It may
+ * return before its time, and must when a device is closed, so it never waits for long. */
 int libusb_handle_events_timeout_completed(void *ctx, struct timeval *timeout, int *completed) {
-    /* It may return before its time, and must when a device is closed: so it never waits for long. */
-    (void)ctx, (void)timeout, (void)completed;
+    (void)ctx, (void)timeout;
     struct timespec until;
     clock_gettime(CLOCK_REALTIME, &until);
     until.tv_nsec += EVENTS_NS;
     until.tv_sec += until.tv_nsec / 1000000000;
     until.tv_nsec %= 1000000000;
+    if (pthread_mutex_timedlock(&events, &until) != 0)
+        return 0;
     pthread_mutex_lock(&lock);
     struct transfer *ended = end_one();
-    while (!ended && pthread_cond_timedwait(&changed, &lock, &until) != ETIMEDOUT)
+    while (!ended && !(completed && *completed) && pthread_cond_timedwait(&changed, &lock, &until) != ETIMEDOUT)
         ended = end_one();
     pthread_mutex_unlock(&lock);
     if (ended)
         ended->callback(ended);
+    pthread_mutex_unlock(&events);
     return 0;
 }
 

@@ -1,7 +1,7 @@
 """A walk played to the bus in real time: a GPS 1040 and a Spatial 1056, as a visitor carries them, or as they fail.
 
-The walker stands where the walk begins until the library listens to both devices, then walks, and at the end stands where it
-ends. Whoever plays it may pull devices out and put them back, and take the sky away from the receiver (`do`).
+The walker stands where the walk begins until a second after the library listens to both devices, then walks, and at the end
+stands where it ends. Whoever plays it may pull devices out and put them back, and take the sky away from the receiver (`do`).
 
 The library takes a device that is silent for half a second for gone. So between its fixes the receiver lists its satellites, as
 a real one does.
@@ -36,6 +36,8 @@ _DAY_MS = 24 * 3600 * 1000
 _STILL_NS = 4_000_000
 _EPOCH_TICKS = 25
 _STANDING = (0.0, 0.0, 0.0)
+#: From the first transfer of a device to its data at the interval that was asked for; usually 0.1 s.
+_ATTACH_NS = 1_000_000_000
 _SATELLITES = nmea_reports(nmea("GPGSV,1,1,04,02,62,120,44,05,41,210,39,12,30,310,41,25,15,045,33"))
 _SATELLITES_NS = 100_000_000
 
@@ -137,7 +139,9 @@ class Walker:
                 raise ValueError(f"the walker cannot {command!r}")
 
     def _play(self) -> None:
-        begin_ns = self._stand(lambda: self._bus.listened_to(self.gps) and self._bus.listened_to(self.spatial))
+        self._stand(lambda: self._bus.listened_to(self.gps) and self._bus.listened_to(self.spatial))
+        heard_ns = monotonic_ns()
+        begin_ns = self._stand(lambda: monotonic_ns() - heard_ns > _ATTACH_NS)
         self.walking.set()
         first_ns = self._said[0][0]
         for t_ns, what in self._said:
