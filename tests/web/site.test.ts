@@ -22,10 +22,19 @@ const SITE = {
       caption_status: "unreviewed",
       variants: [{ id: "a", name: NAMES, why: { en: "Because." } }, { id: "b" }, 3],
       default_variant: "a",
+      footprint_en: [[1, 2], [3, "4"], [5, 6, 7], 8],
     },
     { id: "bare" },
     "none",
   ],
+  landmarks: [
+    { id: "corner", names: NAMES, point_site_m: [1, 2, 3] },
+    { id: "flat", point_site_m: [1, 2] },
+    { point_site_m: [1, 2, 3] },
+    { id: "nowhere" },
+    4,
+  ],
+  walkable: "/models/walkable.glb",
 };
 
 test("a site is read with its monuments, and what it leaves out has a plain value", () => {
@@ -46,6 +55,10 @@ test("a site is read with its monuments, and what it leaves out has a plain valu
         { id: "b", name: "b", why: null },
       ],
       defaultVariant: "a",
+      footprint: [
+        [1, 2],
+        [5, 6],
+      ],
     },
     {
       id: "bare",
@@ -56,8 +69,12 @@ test("a site is read with its monuments, and what it leaves out has a plain valu
       isReviewed: true,
       variants: [],
       defaultVariant: null,
+      footprint: [],
     },
   ]);
+  expect(site.landmarks).toEqual([{ id: "corner", name: "Temple", point_site_m: [1, 2, 3] }]);
+  expect(site.walkable).toBe("/models/walkable.glb");
+  expect(parseSite({}).walkable).toBeNull();
   const bare = parseSite({});
   expect([bare.models, bare.views, bare.monuments, bare.evidence]).toEqual([{}, [], [], {}]);
 });

@@ -1,16 +1,22 @@
 /** The AR page: one session's pictures, each with the square drawn by the pose of that same picture. */
 
 import { Bar } from "./bar";
+import { Care } from "./care";
 import { Composite } from "./composite";
 import { canDraw, element, publishNothing } from "./dom";
 import { invertRigid, T_gltf_site, transform, type Vector3 } from "./frames";
+import { Guide } from "./guide";
 import { Hud } from "./hud";
 import { project } from "./lens";
+import { SiteMap } from "./map";
 import { Square } from "./model";
+import { NOTHING, type Overlay, Overlays } from "./overlay";
 import type { Request } from "./playback";
-import { parseSessions, parseState, type Session } from "./protocol";
-import { parseSite } from "./site";
+import { parseState, type Session } from "./protocol";
+import { askedName, newestName } from "./session";
+import { parseSite, type Site } from "./site";
 import { Link } from "./socket";
+import { loadEdges } from "./walkable";
 import { type CameraPose, decodeFrame, type FrameMessage, magicOf, WireError } from "./wire";
 import { type Connection, newsOf, type Situation } from "./words";
 
@@ -23,10 +29,14 @@ class Page {
   readonly hud = new Hud();
   readonly ready: Promise<void>;
   frame: FrameMessage | null = null;
+  overlay: Overlay = NOTHING;
   session: Session | null = null;
   framesDrawn = 0;
   posesDrawn = 0;
   mismatched = 0;
+  private readonly overlays = new Overlays();
+  private readonly guide = new Guide();
+  private readonly care = new Care();
   private link: Link | null = null;
   private readonly bar = new Bar((request) => this.ask(request));
   private connection: Connection = "connecting";
@@ -58,6 +68,7 @@ class Page {
     try {
       const site = parseSite(await (await fetch("/api/site")).json(), navigator.languages);
       element("credit", HTMLElement).textContent = site.attribution;
+      void this.learn(site);
       const levels = site.models["roman"];
       if (!levels) throw new Error("no model named roman");
       const affordable = this.composite.drawsInSoftware ? levels.slice(-1) : levels;
@@ -69,6 +80,18 @@ class Page {
     } catch (error) {
       this.model = "failed";
       console.warn("the model could not be loaded", error);
+    }
+  }
+
+  /** Take from the site what the overlay must know of it: its plan, and where its edges are. */
+  private async learn(site: Site): Promise<void> {
+    const outlines = site.monuments.map(({ footprint }) => footprint).filter((footprint) => footprint.length > 2);
+    this.guide.map = new SiteMap(element("plan", HTMLElement), outlines);
+    this.overlays.eyeHeight_m = site.eye_height_m;
+    try {
+      if (site.walkable !== null) this.overlays.edges = await loadEdges(site.walkable);
+    } catch (error) {
+      console.warn("the overlay does not know where the site has drops and steps", error);
     }
   }
 
@@ -106,6 +129,7 @@ class Page {
       if (news) this.hud.announce(news);
       this.session = message.session;
       this.bar.show(message.session);
+      this.care.show(message.session);
     } else if (message?.type === "reply" && !message.reply.ok) {
       this.hud.announce(message.reply.error ?? "That did not work.");
     }
@@ -171,11 +195,14 @@ class Page {
   private draw(message: FrameMessage, bitmap: ImageBitmap, arrived_ms: number, now_ms: number): void {
     this.frame = message;
     const { pose, locked } = this;
+    this.overlay = this.overlays.take(message, locked);
+    this.composite.laying = this.overlay.laying;
+    this.guide.show(message, this.overlay);
     this.composite.draw({
       bitmap,
       lens: message.lens,
       quarterTurns: message.quarterTurns,
-      T_site_cam: locked?.headingKnown ? locked.T_site_cam : null,
+      T_site_cam: this.overlay.T_site_cam,
     });
     this.shown?.close();
     this.shown = bitmap;
@@ -229,22 +256,6 @@ class Page {
   }
 }
 
-/** Return the session that the address names, if it names one. */
-function askedName(): string | null {
-  const replay = /^\/replay\/([^/]+)\/?$/.exec(location.pathname)?.[1];
-  return replay === undefined ? new URLSearchParams(location.search).get("session") : decodeURIComponent(replay);
-}
-
-/** Return the newest session; null where there is none. */
-async function newestName(): Promise<string | null> {
-  try {
-    const sessions = parseSessions(await (await fetch("/api/sessions")).json());
-    return sessions.at(-1)?.name ?? null;
-  } catch {
-    return null;
-  }
-}
-
 /** What tests and support see: read-only but for `mark` and `setPast`. */
 function publish(page: Page): void {
   const api = {
@@ -258,7 +269,7 @@ function publish(page: Page): void {
       poseAgeMs: page.hud.age.at(performance.now()),
       motionModel: page.pose?.motionModel ?? null,
       estimator: page.pose?.estimator ?? null,
-      overlay: page.locked?.headingKnown ? "locked" : "none",
+      overlay: page.overlay.style,
       drawCalls: page.composite.cost.calls,
       triangles: page.composite.cost.triangles,
     }),

@@ -9,32 +9,27 @@ import {
   BufferAttribute,
   BufferGeometry,
   Color,
-  HalfFloatType,
   Mesh,
   NoBlending,
   NoColorSpace,
   NoToneMapping,
   OrthographicCamera,
-  PerspectiveCamera,
-  Points,
-  PointsMaterial,
   Scene,
   ShaderMaterial,
   Texture,
   Vector2,
   Vector3,
+  Vector4,
   WebGLRenderer,
   WebGLRenderTarget,
 } from "three";
-import { type Matrix4, viewFromCam } from "./frames";
+import { Drawing } from "./drawing";
+import type { Matrix4 } from "./frames";
 import { type Lens, sameLens } from "./lens";
-import { buildLookup, drawingSize, type Lookup } from "./lookup";
+import { buildLookup, type Lookup } from "./lookup";
 import type { Square } from "./model";
-
-const NEAR_M = 0.1;
-const FAR_M = 900;
-const LARGEST_DRAWING_PX = 3072;
-const TARGET_PX = 7;
+import type { Doubted } from "./soften";
+import type { Laying } from "./overlay";
 
 const VERTEX = /* glsl */ `
   attribute vec2 place; attribute vec2 drawn; attribute float known;
@@ -51,16 +46,41 @@ const VERTEX = /* glsl */ `
 
 const FRAGMENT = /* glsl */ `
   uniform sampler2D picture; uniform sampler2D drawing; uniform float past; uniform bool hasModel;
+  uniform float share; uniform float outline; uniform vec2 texel;
+  uniform sampler2D edges; uniform bool isSoft;
+  uniform vec4 window; uniform vec3 upCam; uniform float eyeHeight; uniform float clearTo;
   varying vec2 vPlace; varying vec2 vDrawn; varying float vKnown;
   vec3 toSrgb(vec3 c) {
     c = clamp(c / (1.0 + 0.12 * c), 0.0, 1.0);
     return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, vec3(lessThan(c, vec3(0.0031308))));
   }
+  // 0 where the ground ahead is to be seen, 1 elsewhere: by the way of sight, whatever of the model stands in it
+  float kept() {
+    if (clearTo <= 0.0) return 1.0;
+    vec3 sight = vec3(mix(window.x, window.y, vDrawn.x), mix(window.w, window.z, vDrawn.y), 1.0);
+    float up = dot(upCam, sight);
+    if (up >= 0.0) return 1.0;
+    float away = eyeHeight * sqrt(max(dot(sight, sight) - up * up, 0.0)) / -up;
+    return smoothstep(clearTo, 1.6 * clearTo, away);
+  }
+  vec4 tone(vec2 at) {
+    vec4 model = texture2D(drawing, at);
+    float solid = step(0.5, model.a); // the ground, thinned, has no outlines: its joints would cover the real one
+    return solid * vec4(toSrgb(model.rgb / max(model.a, 0.003)), 1.0);
+  }
+  float edge() {
+    vec4 across = tone(vDrawn + vec2(texel.x, texel.y)) - tone(vDrawn - vec2(texel.x, texel.y));
+    vec4 along = tone(vDrawn + vec2(texel.x, -texel.y)) - tone(vDrawn - vec2(texel.x, -texel.y));
+    return smoothstep(0.16, 0.5, length(across) + length(along));
+  }
   void main() {
     vec3 colour = texture2D(picture, vPlace).rgb;
     if (hasModel && vKnown > 0.999) {
+      float left = past * kept();
+      if (isSoft) left *= 1.0 - texture2D(edges, vDrawn).r;
       vec4 model = texture2D(drawing, vDrawn);
-      if (model.a > 0.003) colour = mix(colour, toSrgb(model.rgb / model.a), clamp(model.a, 0.0, 1.0) * past);
+      if (model.a > 0.003) colour = mix(colour, toSrgb(model.rgb / model.a), clamp(model.a, 0.0, 1.0) * share * left);
+      if (outline > 0.0) colour = mix(colour, vec3(0.98, 0.9, 0.72), outline * edge() * left);
     }
     gl_FragColor = vec4(colour, 1.0);
   }`;
@@ -71,25 +91,27 @@ export interface Shot {
   readonly quarterTurns: number;
   /** Null: the picture alone. */
   readonly T_site_cam: Matrix4 | null;
+  /** How far off that may be: it softens the edges of what hides the model. Null: not at all. */
+  readonly doubt: Doubted | null;
 }
+
+const SOLID: Laying = { share: 1, outline: 0, clear_m: 0, eye_m: 1.65 };
 
 export class Composite {
   readonly renderer: WebGLRenderer;
   /** How much of the past is shown, 0 to 1. */
   past = 0.85;
-  private readonly camera = new PerspectiveCamera();
+  /** How the model is laid over the next picture. */
+  laying: Laying = SOLID;
   private readonly flat = new OrthographicCamera();
   private readonly sheet = new Scene();
   private readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
   private readonly picture = new Texture();
-  private readonly drawing = new WebGLRenderTarget(1, 1, { type: HalfFloatType, samples: 4 });
+  private readonly drawing: Drawing;
   private square: Square | null = null;
   private lens: Lens | null = null;
   private lookup: Lookup | null = null;
-  private points: Points<BufferGeometry, PointsMaterial> | null = null;
   private shot: Shot | null = null;
-  private model = { calls: 0, triangles: 0 };
-  private readonly eye = new Vector3();
 
   constructor(canvas: HTMLCanvasElement) {
     this.renderer = new WebGLRenderer({ canvas, antialias: false, alpha: false, powerPreference: "high-performance" });
@@ -97,18 +119,28 @@ export class Composite {
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.autoUpdate = false;
     this.renderer.info.autoReset = false;
+    this.drawing = new Drawing(this.renderer);
     this.renderer.setClearColor(new Color(0x0b0a08), 1);
     this.picture.colorSpace = NoColorSpace;
     this.picture.flipY = false;
     this.picture.generateMipmaps = false;
     const uniforms = {
       picture: { value: this.picture },
-      drawing: { value: this.drawing.texture },
+      drawing: { value: this.drawing.target.texture },
+      edges: { value: this.drawing.soft.texture },
+      isSoft: { value: false },
       pictureSize: { value: new Vector2(1, 1) },
       reach: { value: new Vector2(1, 1) },
       quarterTurns: { value: 0 },
       past: { value: 1 },
       hasModel: { value: false },
+      share: { value: 1 },
+      outline: { value: 0 },
+      texel: { value: new Vector2(1, 1) },
+      window: { value: new Vector4() },
+      upCam: { value: new Vector3() },
+      eyeHeight: { value: 1 },
+      clearTo: { value: 0 },
     };
     const material = new ShaderMaterial({
       uniforms,
@@ -122,7 +154,6 @@ export class Composite {
     this.mesh = new Mesh(new BufferGeometry(), material);
     this.mesh.frustumCulled = false;
     this.sheet.add(this.mesh);
-    this.camera.matrixAutoUpdate = false;
   }
 
   /** Whether there is no graphics card: then only the coarsest level can keep up with the pictures. */
@@ -162,12 +193,13 @@ export class Composite {
       this.picture.needsUpdate = true;
     }
     const hasModel = this.square !== null && shot.T_site_cam !== null && this.past > 0;
-    this.renderer.info.reset();
-    if (hasModel && this.square && shot.T_site_cam) this.drawModel(this.square, shot.T_site_cam);
+    if (hasModel && this.square && shot.T_site_cam) this.drawModel(this.square, shot, shot.T_site_cam);
     const { uniforms } = this.mesh.material;
     uniforms["hasModel"] = { value: hasModel };
+    uniforms["isSoft"] = { value: this.drawing.isSoft };
     uniforms["past"] = { value: this.past };
     uniforms["quarterTurns"] = { value: shot.quarterTurns };
+    if (shot.T_site_cam) this.lay(shot.T_site_cam);
     const size = this.renderer.getDrawingBufferSize(new Vector2());
     const [reachX, reachY] = reachOf(shot, size.x / size.y);
     uniforms["reach"] = { value: new Vector2(reachX, reachY) };
@@ -175,29 +207,33 @@ export class Composite {
     this.renderer.render(this.sheet, this.flat);
   }
 
+  /** Set what the picture's shader needs to know of `laying`. */
+  private lay(T_site_cam: Matrix4): void {
+    const { uniforms } = this.mesh.material;
+    const { share, outline, clear_m, eye_m } = this.laying;
+    uniforms["share"] = { value: share };
+    uniforms["outline"] = { value: outline };
+    uniforms["texel"] = { value: new Vector2(1.2 / this.drawing.target.width, 1.2 / this.drawing.target.height) };
+    const { left, right, top, bottom } = this.lookup?.window ?? { left: 0, right: 0, top: 0, bottom: 0 };
+    uniforms["window"] = { value: new Vector4(left, right, top, bottom) };
+    const [x = 0, y = 0, z = 0] = T_site_cam.slice(8, 11);
+    uniforms["upCam"] = { value: new Vector3(x, y, z) };
+    uniforms["eyeHeight"] = { value: eye_m };
+    uniforms["clearTo"] = { value: clear_m };
+  }
+
   /** Draw again, after something other than the picture has changed. */
   redraw(): void {
     if (this.shot) this.draw(this.shot);
   }
 
-  /** Draw small squares of colour at points of the gltf world, over everything: for tests of where the page draws. */
-  mark(points_gltf: readonly (readonly [number, number, number])[], colours: readonly string[]): void {
-    if (!this.square) return;
-    if (this.points) this.square.scene.remove(this.points);
-    const geometry = new BufferGeometry();
-    geometry.setAttribute("position", new BufferAttribute(new Float32Array(points_gltf.flat()), 3));
-    const rgb = colours.flatMap((colour) => new Color(colour).toArray());
-    geometry.setAttribute("color", new BufferAttribute(new Float32Array(rgb), 3));
-    const material = new PointsMaterial({
-      vertexColors: true,
-      sizeAttenuation: false,
-      depthTest: false,
-      toneMapped: false,
-    });
-    this.points = new Points(geometry, material);
-    this.points.renderOrder = 1000;
-    this.points.frustumCulled = false;
-    this.square.scene.add(this.points);
+  /** Draw small squares of colour at points of the gltf world, over everything or where they are not hidden: for tests. */
+  mark(
+    points_gltf: readonly (readonly [number, number, number])[],
+    colours: readonly string[],
+    hideable = false,
+  ): void {
+    if (this.square) this.drawing.mark(this.square, points_gltf, colours, hideable);
   }
 
   /** Return RGBA bytes of a rectangle of the composite in pixels of the stored picture, top row first. */
@@ -219,40 +255,11 @@ export class Composite {
 
   /** What the last model drawing cost. */
   get cost(): { readonly calls: number; readonly triangles: number } {
-    return this.model;
+    return this.drawing.cost;
   }
 
-  private drawModel(square: Square, T_site_cam: Matrix4): void {
-    const lookup = this.lookup;
-    if (!lookup || !this.lens) return;
-    const { left, right, top, bottom } = lookup.window;
-    const size = this.renderer.getDrawingBufferSize(new Vector2());
-    const scale = Math.max(0.5, Math.min(size.x / this.lens.width_px, size.y / this.lens.height_px));
-    const [width, height] = drawingSize(this.lens, lookup.window, scale, LARGEST_DRAWING_PX);
-    if (this.drawing.width !== width || this.drawing.height !== height) this.drawing.setSize(width, height);
-    if (this.points) this.points.material.size = TARGET_PX * (width / ((right - left) * this.lens.fx_px));
-    this.camera.projectionMatrix.makePerspective(
-      left * NEAR_M,
-      right * NEAR_M,
-      -top * NEAR_M,
-      -bottom * NEAR_M,
-      NEAR_M,
-      FAR_M,
-      this.camera.coordinateSystem,
-    );
-    this.camera.projectionMatrixInverse.copy(this.camera.projectionMatrix).invert();
-    const view = viewFromCam(T_site_cam);
-    this.camera.matrix.fromArray(view as number[]).transpose();
-    this.camera.updateMatrixWorld(true);
-    if (square.update(this.eye.setFromMatrixPosition(this.camera.matrixWorld)))
-      this.renderer.shadowMap.needsUpdate = true;
-    this.renderer.setRenderTarget(this.drawing);
-    this.renderer.setClearColor(0x000000, 0);
-    this.renderer.clear();
-    this.renderer.render(square.scene, this.camera);
-    this.renderer.setClearColor(new Color(0x0b0a08), 1);
-    const { calls, triangles } = this.renderer.info.render;
-    this.model = { calls, triangles };
+  private drawModel(square: Square, { lens, doubt }: Shot, T_site_cam: Matrix4): void {
+    if (this.lookup) this.drawing.render(square, { lens, window: this.lookup.window, T_site_cam, doubt, aside_m: 0 });
   }
 
   private useLens(lens: Lens): void {

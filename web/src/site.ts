@@ -1,5 +1,7 @@
 /** What `GET /api/site` tells: the facts of a site, read leniently, every text in the visitor's language. No DOM in here. */
 
+import type { Vector3 } from "./frames";
+import type { Place } from "./plan";
 import { type Fields, fields, list, number, text_, texts } from "./protocol";
 
 /** One of several ways in which scholars rebuild a monument. */
@@ -20,6 +22,15 @@ export interface Monument {
   readonly isReviewed: boolean;
   readonly variants: readonly Variant[];
   readonly defaultVariant: string | null;
+  /** Corners on the ground, east and north. */
+  readonly footprint: readonly Place[];
+}
+
+/** A point that stands today and that visitors can find again: they point it out to say where the picture looks. */
+export interface Landmark {
+  readonly id: string;
+  readonly name: string;
+  readonly point_site_m: Vector3;
 }
 
 /** A place to stand and a direction to look in. */
@@ -48,6 +59,9 @@ export interface Site {
   /** What the keys of sources stand for. */
   readonly sources: Readonly<Record<string, string>>;
   readonly monuments: readonly Monument[];
+  readonly landmarks: readonly Landmark[];
+  /** Address of what visitors walk on; null where it is not built. */
+  readonly walkable: string | null;
 }
 
 /** Read a site; texts in the first of `languages` that it has, else in English. */
@@ -66,6 +80,10 @@ export function parseSite(value: unknown, languages: readonly string[] = []): Si
     monuments: list(site["monuments"])
       .filter(isObject)
       .map((monument) => parseMonument(monument, languages, sources)),
+    landmarks: list(site["landmarks"])
+      .filter(isObject)
+      .flatMap((landmark) => parseLandmark(landmark, languages)),
+    walkable: typeof site["walkable"] === "string" ? site["walkable"] : null,
   };
 }
 
@@ -103,7 +121,19 @@ function parseMonument(monument: Fields, languages: readonly string[], sources: 
       .filter(isObject)
       .map((variant) => parseVariant(variant, languages)),
     defaultVariant: typeof monument["default_variant"] === "string" ? monument["default_variant"] : null,
+    footprint: list(monument["footprint_en"]).flatMap((corner): Place[] => {
+      const [e, n] = list(corner).map((value) => number(value, Number.NaN));
+      return e !== undefined && n !== undefined && Number.isFinite(e + n) ? [[e, n]] : [];
+    }),
   };
+}
+
+/** A landmark without a place is none. */
+function parseLandmark(landmark: Fields, languages: readonly string[]): Landmark[] {
+  const id = text_(landmark["id"], "");
+  const [e, n, u] = list(landmark["point_site_m"]).map((value) => number(value, Number.NaN));
+  if (id === "" || e === undefined || n === undefined || u === undefined || !Number.isFinite(e + n + u)) return [];
+  return [{ id, name: inLanguage(landmark["names"] ?? landmark["name"], languages) ?? id, point_site_m: [e, n, u] }];
 }
 
 function parseVariant(variant: Fields, languages: readonly string[]): Variant {
