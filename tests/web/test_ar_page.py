@@ -16,7 +16,7 @@ pytestmark = pytest.mark.browser
 
 _STATS = {
     *("framesDrawn", "posesDrawn", "mismatchedFrames", "lastFrameId", "lastPoseFrameId", "poseAgeMs"),
-    *("motionModel", "estimator", "overlay", "drawCalls", "triangles"),
+    *("motionModel", "estimator", "overlay", "drawCalls", "triangles", "occluders"),
 }
 _SAMPLE = """(count) => new Promise((resolve) => {
     const seen = [];

@@ -6,12 +6,12 @@ from collections.abc import Iterator
 import cv2
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, Page, WebSocketRoute
+from playwright.sync_api import Browser
 
 from assets.levels import LEVELS
 from server.showing import Showing
-from server.wire import is_frame
 from tests.web.pages import ArPage, open_page
+from tests.web.tampering import Tampering
 from tests.web.walk import CORNERS, NAME, showing_walk
 
 pytestmark = pytest.mark.browser
@@ -32,31 +32,6 @@ def ar(browser: Browser) -> Iterator[ArPage]:
     with open_page(browser) as page:
         page.page.route("**/models/*", lambda route: route.fulfill(status=404))
         yield page
-
-
-class Tampering:
-    """Between the server and the page: patches every second frame message, and notes whose."""
-
-    def __init__(self, page: Page, offset: int, patch: bytes, every: int = 2) -> None:
-        self.patched: list[int] = []
-        self.whole: list[int] = []
-        self._offset, self._patch, self._every = offset, patch, every
-        page.route_web_socket("**/ws/view/**", self._join)
-
-    def _join(self, route: WebSocketRoute) -> None:
-        server = route.connect_to_server()
-        server.on_message(lambda message: route.send(self._pass(message)))
-
-    def _pass(self, message: str | bytes) -> str | bytes:
-        if isinstance(message, str) or not is_frame(message):
-            return message
-        frame_id = int.from_bytes(message[8:12], "little")
-        if (len(self.patched) + len(self.whole)) % self._every != self._every - 1:
-            self.whole.append(frame_id)
-            return message
-        self.patched.append(frame_id)
-        end = self._offset + len(self._patch)
-        return message[: self._offset] + self._patch + message[end:]
 
 
 @pytest.mark.parametrize(

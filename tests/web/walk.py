@@ -103,19 +103,21 @@ def _volume(monument: Monument, rival: str | None) -> Node:
     return Node(name, shape.meshes(Place.of(monument)), facts | variant)
 
 
-def make_site(folder: Path) -> Site:
-    """Return the State Agora with its model, the same at three levels, built into `folder`."""
+def make_site(folder: Path, occluders: Scene | None = None) -> Site:
+    """Return the State Agora with its model, the same at three levels, and what hides it, built into `folder`."""
     site = replace(load_site(ROOT / "assets" / "state_agora"), folder=folder)
     (folder / "built").mkdir()
     for level in LEVELS:
         (folder / "built" / f"roman.{level}.glb").write_bytes(write_glb(make_scene(site), PAGE_RULES))
+    if occluders is not None:
+        (folder / "built" / "occluders.glb").write_bytes(write_glb(occluders, PAGE_RULES))
     return site
 
 
 @contextmanager
-def showing_walk(folder: Path) -> Iterator[Showing]:
+def showing_walk(folder: Path, occluders: Scene | None = None) -> Iterator[Showing]:
     """Show the walk, by its truth and again and again, on a server of its own."""
     write_log(folder / f"{NAME}.mcap")
     settings = ReplaySettings(estimator="truth", looping=True)
-    with Showing(make_site(folder), Log.open(folder / f"{NAME}.mcap"), settings, port=0, web=WEB) as showing:
+    with Showing(make_site(folder, occluders), Log.open(folder / f"{NAME}.mcap"), settings, port=0, web=WEB) as showing:
         yield showing

@@ -10,6 +10,7 @@ import { Hud } from "./hud";
 import { project } from "./lens";
 import { SiteMap } from "./map";
 import { Square } from "./model";
+import { loadOccluders } from "./occluders";
 import { NOTHING, type Overlay, Overlays } from "./overlay";
 import type { Request } from "./playback";
 import { parseState, type Session } from "./protocol";
@@ -31,6 +32,7 @@ class Page {
   frame: FrameMessage | null = null;
   overlay: Overlay = NOTHING;
   session: Session | null = null;
+  square: Square | null = null;
   framesDrawn = 0;
   posesDrawn = 0;
   mismatched = 0;
@@ -75,8 +77,11 @@ class Page {
       const square = await Square.load(affordable, GROUND_SHARE);
       for (const { id, defaultVariant } of site.monuments)
         if (defaultVariant !== null) square.showVariant(id, defaultVariant);
+      this.square = square;
       this.composite.show(square);
       this.model = "shown";
+      if (site.occluders !== null)
+        void loadOccluders(site.occluders).then((group) => square.hideBehind(group), notHidden);
     } catch (error) {
       this.model = "failed";
       console.warn("the model could not be loaded", error);
@@ -203,6 +208,7 @@ class Page {
       lens: message.lens,
       quarterTurns: message.quarterTurns,
       T_site_cam: this.overlay.T_site_cam,
+      doubt: this.overlay.doubt,
     });
     this.shown?.close();
     this.shown = bitmap;
@@ -256,6 +262,10 @@ class Page {
   }
 }
 
+function notHidden(error: unknown): void {
+  console.warn("nothing hides the square", error);
+}
+
 /** What tests and support see: read-only but for `mark` and `setPast`. */
 function publish(page: Page): void {
   const api = {
@@ -272,6 +282,7 @@ function publish(page: Page): void {
       overlay: page.overlay.style,
       drawCalls: page.composite.cost.calls,
       triangles: page.composite.cost.triangles,
+      occluders: page.square?.hasOccluders ?? false,
     }),
     project: (point: Vector3) => {
       const { frame, locked } = page;
@@ -283,10 +294,11 @@ function publish(page: Page): void {
     },
     session: () => page.session,
     setPast: (share: number) => page.setPast(share),
-    debugTargets: (points: Vector3[], colours: string[]) => {
+    debugTargets: (points: Vector3[], colours: string[], hideable = false) => {
       page.composite.mark(
         points.map((point) => transform(T_gltf_site, point)),
         colours,
+        hideable,
       );
       page.setPast(1);
     },

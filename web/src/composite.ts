@@ -28,8 +28,8 @@ import type { Matrix4 } from "./frames";
 import { type Lens, sameLens } from "./lens";
 import { buildLookup, type Lookup } from "./lookup";
 import type { Square } from "./model";
-import type { Doubted } from "./soften";
 import type { Laying } from "./overlay";
+import type { Doubted } from "./soften";
 
 const VERTEX = /* glsl */ `
   attribute vec2 place; attribute vec2 drawn; attribute float known;

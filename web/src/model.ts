@@ -5,6 +5,7 @@ import {
   Box3,
   Color,
   DirectionalLight,
+  type Group as Group3D,
   HemisphereLight,
   InstancedMesh,
   Mesh,
@@ -51,6 +52,7 @@ export class Square {
   private reach_m: readonly number[] = [];
   private eye = new Vector3();
   private evidence = false;
+  private occluders: Group3D | null = null;
 
   /** `levels` are the model's files, the finest first; the last one is in `first`. */
   private constructor(levels: readonly string[], first: GLTF, groundShare: number) {
@@ -109,6 +111,18 @@ export class Square {
     if (!group) return;
     group.variant = variant;
     showGroup(group);
+    this.changed();
+  }
+
+  /** Whether it is hidden by what stands today. */
+  get hasOccluders(): boolean {
+    return this.occluders?.visible ?? false;
+  }
+
+  /** Draw what stands today into the depth alone: the model is not seen behind it. */
+  hideBehind(occluders: Group3D): void {
+    this.occluders = occluders;
+    this.scene.add(occluders);
     this.changed();
   }
 

@@ -46,6 +46,11 @@ export interface View {
   readonly text: string | null;
 }
 
+export interface Origin {
+  readonly lat_deg: number;
+  readonly lon_deg: number;
+}
+
 export interface Site {
   readonly name: string;
   /** Addresses of each model's levels of detail, the finest first. */
@@ -62,6 +67,10 @@ export interface Site {
   readonly landmarks: readonly Landmark[];
   /** Address of what visitors walk on; null where it is not built. */
   readonly walkable: string | null;
+  /** Address of what hides the model today; null where it is not built. */
+  readonly occluders: string | null;
+  /** Where the site's frame is on the Earth; null for nobody knows. */
+  readonly origin: Origin | null;
 }
 
 /** Read a site; texts in the first of `languages` that it has, else in English. */
@@ -84,7 +93,15 @@ export function parseSite(value: unknown, languages: readonly string[] = []): Si
       .filter(isObject)
       .flatMap((landmark) => parseLandmark(landmark, languages)),
     walkable: typeof site["walkable"] === "string" ? site["walkable"] : null,
+    occluders: typeof site["occluders"] === "string" ? site["occluders"] : null,
+    origin: parseOrigin(site["origin"]),
   };
+}
+
+function parseOrigin(value: unknown): Origin | null {
+  const origin = isObject(value) ? value : {};
+  const [lat_deg, lon_deg] = [number(origin["lat_deg"], Number.NaN), number(origin["lon_deg"], Number.NaN)];
+  return Math.abs(lat_deg) <= 90 && Math.abs(lon_deg) <= 360 ? { lat_deg, lon_deg } : null;
 }
 
 /** A model is the address of its only file, or its levels. */
