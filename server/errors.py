@@ -5,6 +5,7 @@ ServerError
 ├── PortInUse            the port to listen on is taken (the command line exits 2)
 ├── AddressUnavailable   the address to listen on is not this machine's
 ├── UnknownSession       no session of that name
+├── TokenRefused         a token that is not this server's, or whose time is over
 ├── ServerFull           as many viewers or sessions as the server will take
 ├── LinkRefused          a server will not have this rig: wrong token, or another rig took the session
 ├── SensorMissing        a sensor that a calibration needs is not there (the command line exits 3)
@@ -30,6 +31,10 @@ class AddressUnavailable(ServerError):
 
 class UnknownSession(ServerError):
     """No rig has opened a session of that name."""
+
+
+class TokenRefused(ServerError):
+    """Whoever asks is not let in by what it shows."""
 
 
 class ServerFull(ServerError):
