@@ -21,6 +21,7 @@ from assets.errors import AssetError
 from assets.site import Site, load_site
 from server import live_commands, options
 from server.calibrating.commands import calibrate
+from server.doctor.command import doctor
 from server.errors import ServerError
 from server.options import (
     WEB,
@@ -35,6 +36,7 @@ from server.options import (
     require_built,
     site_with,
 )
+from server.serve_command import serve
 from tracker.errors import InputError
 from tracker.estimators import check_name
 from tracker.fuzzy import INDICES, LEVELS, NEXT_INDEX, rules_by_name
@@ -51,6 +53,8 @@ app = typer.Typer(
 app.command()(live_commands.walk)
 app.command()(live_commands.track)
 app.command()(live_commands.record)
+app.command()(serve)
+app.command()(doctor)
 app.add_typer(calibrate, name="calibrate")
 out = Console(highlight=False)
 err = Console(stderr=True, highlight=False)

@@ -1,0 +1,94 @@
+"""`agora doctor`: the command."""
+
+import json
+import shlex
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import nullcontext
+from datetime import date
+from functools import partial
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+
+from server.live_commands import Camera, Gps, Imu, RecordFolder, RigPlace
+from server.options import SITE, WEB, Browser, Port, SiteFolder, site_with
+
+if TYPE_CHECKING:
+    from server.rig_sources import RigSources
+    from tracker.sources.source import Source
+
+out = Console(highlight=False)
+err = Console(stderr=True, highlight=False)
+
+#: A word in the names of the Phidgets that are a receiver and an inertial unit.
+_PHIDGETS = {"gps": "GPS", "imu": "Spatial", "camera": "no camera"}
+Seconds = Annotated[float, typer.Option("--seconds", min=0.5, max=600.0, help="How long to measure rates.")]
+
+
+def doctor(
+    gps: Gps = "phidget",
+    imu: Imu = "phidget",
+    camera: Camera = "0",
+    rig: RigPlace = None,
+    record: RecordFolder = None,
+    port: Port = 8470,
+    browser: Browser = True,
+    seconds: Seconds = 5.0,
+    site: SiteFolder = SITE,
+    as_json: Annotated[bool, typer.Option("--json", help="All figures as JSON.")] = False,
+) -> None:
+    """Look at all that `agora walk` with the same options needs: each is well, or what to do is said. Exit code 0 or 1."""
+    # imported here, so that `agora rules` need not wait for a web server
+    from server.doctor.listening import Wanted, listen
+    from server.doctor.looking import found_devices, machine_facts, rig_file_facts
+    from server.doctor.machine_verdicts import machine_verdicts
+    from server.doctor.page import as_json as json_of
+    from server.doctor.page import page
+    from server.doctor.rig_verdicts import calibration_verdicts, found_verdicts
+    from server.doctor.sensor_verdicts import TITLES, sensor_verdicts
+    from server.doctor.verdict import all_is_well
+    from server.rig_sources import RigSources
+    from tracker.rig_file import RigFile
+
+    asked = {"gps": gps, "imu": imu, "camera": camera}
+    calibration = rig_file_facts(rig)
+    makers = RigSources(calibration.rig_file or RigFile())
+    asked_for = {sensor: spec for sensor, spec in asked.items() if spec != "none"}
+    titles = " and ".join(TITLES[sensor] for sensor in asked_for)
+    place = site_with(site, None)
+    with err.status("looking …") if err.is_terminal else nullcontext() as status:
+        with ThreadPoolExecutor(1) as beside:
+            found_later = beside.submit(found_devices)
+            machine = machine_facts(place, WEB, port=port, record=record, browser=browser)
+            found = found_later.result()
+        # nothing else runs now: pauses of a sensor are then its own
+        wanted = [
+            Wanted(
+                sensor,
+                spec,
+                partial(_source, makers, sensor, spec),
+                spec.startswith("phidget") and found.has_phidget(_PHIDGETS[sensor]),
+            )
+            for sensor, spec in asked_for.items()
+        ]
+        sensors = listen(
+            wanted, seconds, lambda s: None if status is None else status.update(f"listening to {titles}, {s:.0f} s")
+        )
+    verdicts = [verdict for facts in sensors for verdict in sensor_verdicts(facts, found, calibration.rig_file)]
+    verdicts += calibration_verdicts(calibration, sensors, date.today())
+    verdicts += machine_verdicts(machine, sensors)
+    verdicts += found_verdicts(found, asked.values())
+    if as_json:
+        out.print_json(json.dumps(json_of(verdicts, asked)))
+    else:
+        options = {**asked, **({} if rig is None else {"rig": rig}), **({} if record is None else {"record": record})}
+        words = [word for name, value in options.items() for word in (f"--{name}", str(value))]
+        out.print(page(verdicts, shlex.join(["agora", "walk", *words])))
+    raise typer.Exit(0 if all_is_well(verdicts) else 1)
+
+
+def _source(makers: "RigSources", sensor: str, spec: str) -> "Source":
+    """Return one source; what is amiss with it must not hide what is amiss with others."""
+    specs = {"gps": "none", "imu": "none", "camera": "none", sensor: spec}
+    return makers.make(gps=specs["gps"], imu=specs["imu"], camera=specs["camera"])[0]
