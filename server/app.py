@@ -11,7 +11,7 @@ from fastapi.telemetry import TelemetryConfig
 from server.auth import Tokens
 from server.guards import Guard
 from server.routes import Bundle, api_routes, log_routes, page_routes
-from server.sessions import Sessions
+from server.sessions import MAX_SESSIONS, MAX_VIEWERS, Sessions
 from server.sockets import socket_routes
 
 LOOPBACK_HOSTS = ("127.0.0.1", "localhost", "::1")
@@ -35,6 +35,8 @@ def create_app(
     allowed_hosts: Collection[str] = LOOPBACK_HOSTS,
     console_url: str | None = None,
     logs: Mapping[str, Path] | None = None,
+    max_sessions: int = MAX_SESSIONS,
+    max_viewers: int = MAX_VIEWERS,
 ) -> FastAPI:
     """Return the server's application; `app.state.sessions` are its sessions.
 
@@ -47,8 +49,10 @@ def create_app(
         allowed_hosts: Names in the Host header that are us; `*` for any.
         console_url: Where `/console` leads, if anywhere.
         logs: The recorded walks that `/api/logs` offers, by session name.
+        max_sessions: Sessions at a time.
+        max_viewers: Viewers of one session.
     """
-    sessions = Sessions(monotonic_ns)
+    sessions = Sessions(monotonic_ns, max_sessions, max_viewers)
     # The interactive documentation loads its scripts from elsewhere, so there is none; /openapi.json stays.
     app = FastAPI(title="Agora", docs_url=None, redoc_url=None, telemetry=_NO_TELEMETRY)
     app.state.sessions = sessions

@@ -30,6 +30,8 @@ class Mailbox:
 
     def put_text(self, text: str) -> None:
         """Queue a text message; too many of them close the mailbox."""
+        if self.closing is not None:
+            return
         if len(self._texts) >= MAX_TEXTS:
             self.close(TOO_SLOW, "too many messages were waiting")
             return
@@ -53,16 +55,20 @@ class Mailbox:
                 pass
             self._news.set()
 
-    def close(self, code: int, reason: str) -> None:
-        """End the mailbox: what waits is dropped; the first reason stays."""
-        self.closing = self.closing or (code, reason)
+    def close(self, code: int, reason: str, last: str | None = None) -> None:
+        """End the mailbox: what waits is dropped, a last text still goes; the first reason stays."""
+        if self.closing is None:
+            self.closing = (code, reason)
+            self._texts = deque() if last is None else deque([last])
         self._news.set()
 
     async def next(self) -> str | bytes | None:
         """Return what to send next, waiting for it: text before frames before poses; None once closed."""
-        while self.closing is None:
+        while True:
             if self._texts:
                 return self._texts.popleft()
+            if self.closing is not None:
+                return None
             if self._frame is not None and len(self._unacknowledged) < MAX_UNACKNOWLEDGED:
                 (frame_id, data), self._frame = self._frame, None
                 self._unacknowledged.append(frame_id)
@@ -72,4 +78,3 @@ class Mailbox:
                 return pose
             self._news.clear()
             await self._news.wait()
-        return None

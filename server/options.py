@@ -49,9 +49,9 @@ def site_with(folder: Path, eye_height_m: float | None) -> Site:
     return site if eye_height_m is None else replace(site, eye_height_m=eye_height_m)
 
 
-def require_built(site: Site) -> None:
+def require_built(site: Site, web: Path = WEB) -> None:
     """End the program where there is nothing to serve yet."""
-    if not (WEB / "index.html").is_file() or not any((site.folder / "built").glob("*.glb")):
+    if not (web / "index.html").is_file() or not any((site.folder / "built").glob("*.glb")):
         Console(stderr=True, highlight=False).print(
             "agora: the pages or the models are not built yet: run `make setup` (or `make demo`)."
         )

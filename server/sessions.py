@@ -15,6 +15,10 @@ MAX_VIEWERS: Final = 64
 MAX_PENDING: Final = 64
 #: Close code of our own: another rig has taken the session.
 REPLACED: Final = 4409
+#: Close code of our own: an operator has ended the session, or it had to make room.
+ENDED: Final = 4410
+#: RFC 6455's registry: "service restart".
+RESTART: Final = 1012
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
 _DEFAULTS: Final[dict[str, Any]] = {
@@ -35,8 +39,9 @@ _LEFT = "The rig has left: what is shown is the last that it sent."
 class Session:
     """One walk, as the server knows it."""
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, max_viewers: int = MAX_VIEWERS) -> None:
         self.name = name
+        self._max_viewers = max_viewers
         self.frames = 0
         """Frames that came from the rig."""
         self.t_frame_ns: int | None = None
@@ -113,8 +118,8 @@ class Session:
 
     def join(self, viewer: Mailbox) -> None:
         """Add a viewer, who gets at once what all the others have; `ServerFull` where there are too many."""
-        if len(self.viewers) >= MAX_VIEWERS:
-            raise ServerFull(f"{MAX_VIEWERS} viewers watch already: try again when one has left.")
+        if len(self.viewers) >= self._max_viewers:
+            raise ServerFull(f"{self._max_viewers} viewers watch already: try again when one has left.")
         self.viewers.add(viewer)
         viewer.put_text(messages.hello(self.describe()))
         if self._frame is not None:
@@ -140,6 +145,14 @@ class Session:
 
     # -----------------------------------------------------------------------------------------------------------------
 
+    def end(self, code: int, reason: str) -> None:
+        """Tell viewers why it ends, and close them and the rig with that code."""
+        last = messages.state(self.describe() | {"connected": False, "notice": reason})
+        for viewer in self.viewers:
+            viewer.close(code, reason, last)
+        if self._rig is not None:
+            self._rig.close(code, reason)
+
     def _tell(self) -> None:
         text = messages.state(self.describe())
         for viewer in self.viewers:
@@ -163,9 +176,12 @@ def session_name(text: str) -> str:
 class Sessions:
     """All sessions, oldest first."""
 
-    def __init__(self, now_ns: Callable[[], int]) -> None:
+    def __init__(
+        self, now_ns: Callable[[], int], max_sessions: int = MAX_SESSIONS, max_viewers: int = MAX_VIEWERS
+    ) -> None:
         self.now_ns = now_ns
         """The clock that frames are stamped with."""
+        self._max_sessions, self._max_viewers = max_sessions, max_viewers
         self._sessions: dict[str, Session] = {}
 
     def __iter__(self) -> Iterator[Session]:
@@ -188,15 +204,24 @@ class Sessions:
             raise UnknownSession("A session's name is 1 to 64 letters, digits, dots, dashes or underscores.")
         if name not in self._sessions:
             self._make_room()
-            self._sessions[name] = Session(name)
+            self._sessions[name] = Session(name, self._max_viewers)
         return self._sessions[name]
 
+    def say_goodbye(self) -> None:
+        """Tell every viewer and every rig that the server stops; they may come again."""
+        for session in self:
+            session.end(RESTART, "The server is being stopped: this page connects again when it is back.")
+
+    @property
+    def quiet(self) -> bool:
+        """Whether nobody is connected."""
+        return not any(session.connected or session.viewers for session in self)
+
     def _make_room(self) -> None:
-        if len(self._sessions) < MAX_SESSIONS:
+        if len(self._sessions) < self._max_sessions:
             return
         idle = next((s for s in self if not s.connected), None)
         if idle is None:
-            raise ServerFull(f"{MAX_SESSIONS} rigs are connected already: try again when one has left.")
-        for viewer in idle.viewers:
-            viewer.close(1001, "the session has ended")
+            raise ServerFull(f"{self._max_sessions} rigs are connected already: try again when one has left.")
+        idle.end(ENDED, "This walk has ended, and another has its place.")
         del self._sessions[idle.name]

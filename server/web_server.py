@@ -1,5 +1,6 @@
 """uvicorn on a thread of its own: started and stopped with the rest of the program."""
 
+import asyncio
 import errno
 import socket
 from threading import Thread
@@ -11,11 +12,14 @@ import uvicorn
 from fastapi import FastAPI
 
 from server.errors import AddressUnavailable, PortInUse, ServerError
+from server.sessions import Sessions
 from server.wire import MAX_FRAME_BYTES
 
 _START_S: Final = 20.0
 #: How long connections may take to say goodbye before they are cut.
 _GOODBYE_S: Final = 1
+#: How long those who read have to hear why.
+_HEARD_S: Final = 0.5
 
 
 class WebServer:
@@ -46,7 +50,7 @@ class WebServer:
             server_header=False,
             timeout_graceful_shutdown=_GOODBYE_S,
         )
-        self._server = uvicorn.Server(config)
+        self._server = _Server(config, getattr(app.state, "sessions", None))
         self._thread = Thread(target=self._server.run, args=([self._socket],), name="web-server", daemon=True)
 
     @property
@@ -86,6 +90,25 @@ class WebServer:
         if self._thread.is_alive():
             self._thread.join()
         self._socket.close()
+
+
+class _Server(uvicorn.Server):
+    """Says goodbye before it hangs up."""
+
+    def __init__(self, config: uvicorn.Config, sessions: Sessions | None) -> None:
+        super().__init__(config)
+        self._sessions = sessions
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Tell everybody why, wait a little for them to hear it, and stop."""
+        for server in self.servers:
+            server.close()  # a rig told to go would come back at once
+        if self._sessions is not None:
+            self._sessions.say_goodbye()
+            deadline = monotonic() + _HEARD_S
+            while not self._sessions.quiet and monotonic() < deadline:
+                await asyncio.sleep(0.01)
+        await super().shutdown(sockets)
 
 
 def _bind(host: str, port: int) -> socket.socket:
