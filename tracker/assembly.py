@@ -1,10 +1,11 @@
 """A pipeline put together for a rig at a place and a date: the same one for a recorded walk and for a live one."""
 
-from tracker.estimator import Origin
-from tracker.estimators import Settings, build
+from tracker.estimator import Estimator, Origin
+from tracker.estimators import PRECISE, Settings, build
 from tracker.geomagnetism import magnetic_field
 from tracker.pipeline import Pipeline
 from tracker.precise.ground import EyeHeight
+from tracker.retractable import Retractable
 from tracker.rig import Rig
 from tracker.vision import VisionFrontEnd
 
@@ -36,15 +37,20 @@ def assemble(
         UnknownEstimator: No estimator has that name.
     """
     earth = magnetic_field(origin.lat_deg, origin.lon_deg, origin.h_ellipsoid_m, date_ns)
-    estimator = build(
-        name,
-        origin=origin,
-        rig=rig,
-        declination_rad=earth.declination_rad,
-        earth_field=earth,
-        truth_origin=truth_origin,
-        settings=settings,
-        eyes_z_m=eyes_z_m,
-    )
+
+    def make() -> Estimator:
+        return build(
+            name,
+            origin=origin,
+            rig=rig,
+            declination_rad=earth.declination_rad,
+            earth_field=earth,
+            truth_origin=truth_origin,
+            settings=settings,
+            eyes_z_m=eyes_z_m,
+        )
+
+    # only `precise` listens to what visitors say
+    estimator = Retractable(make) if name.endswith(f"/{PRECISE}") else make()
     has_eyes = looks and rig.camera is not None and estimator.uses_camera
     return Pipeline(estimator, VisionFrontEnd(rig.camera) if has_eyes and rig.camera else None)

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from tracker.estimator import Estimator, Innovation, Pose, Snapshot
-from tracker.measurements import Measurement, Outcome
+from tracker.measurements import Measurement, Outcome, Sighting, Standpoint
 
 
 class Levelled:
@@ -27,10 +27,21 @@ class Levelled:
 
     def step(self, measurement: Measurement) -> Outcome:
         """Pass on a measurement, and look out for the first pose."""
-        outcome = self._estimator.step(measurement)
+        outcome = self._estimator.step(self._lowered(measurement))
         if self._lift_m is None and (pose := self._estimator.predict(measurement.t_ns)) is not None:
             self._lift_m = self._first_z_m - pose.p_site_m[2]
         return outcome
+
+    def _lowered(self, measurement: Measurement) -> Measurement:
+        """Return what visitors say of heights, which they see lifted, as the other estimator has them."""
+        lift_m = self._lift_m or 0.0
+        if isinstance(measurement, Sighting):
+            e, n, u = measurement.point_site_m
+            return replace(measurement, point_site_m=(e, n, u - lift_m))
+        if isinstance(measurement, Standpoint):
+            e, n, u = measurement.p_site_m
+            return replace(measurement, p_site_m=(e, n, u - lift_m))
+        return measurement
 
     def predict(self, t_ns: int) -> Pose | None:
         """Return the pose at t_ns, lifted."""

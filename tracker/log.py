@@ -36,6 +36,9 @@ TOPICS: dict[str, tuple[str, str]] = {
     "/camera/image/compressed": (ros.IMAGE, "frames"),
     "/camera/video": (ros.VIDEO, "frames"),
     "/camera/motion": (ros.MOTION, "motions"),
+    "/visitor/sighting": (ros.SIGHTING, "said"),
+    "/visitor/standpoint": (ros.STANDPOINT, "said"),
+    "/visitor/retraction": (ros.RETRACTION, "said"),
     "/ground_truth/odom": (ros.ODOMETRY, "truth"),
     "/camera/camera_info": (ros.CAMERA_INFO, ""),
     "/tf_static": (ros.TF, ""),
@@ -54,7 +57,10 @@ class LogInfo:
     """Arrival of the first message."""
     t_end_ns: int
     counts: dict[str, int]
-    """Messages by sensor: imu, mag, compass, gps, gps_velocity, frames, truth; and motions, what a front end made of frames."""
+    """Messages by sensor: imu, mag, compass, gps, gps_velocity, frames, truth.
+
+    And `motions`, what a front end made of frames, and `said`, what visitors have said.
+    """
     first_fix: GpsFix | None
     truth_origin: Origin | None
     camera_encoding: Literal["jpeg", "png", "h264"] | None
@@ -288,6 +294,12 @@ class _Reading:
                 )  # the larger of each: it counts on from the beginning
             case "/camera/motion":
                 yield ros.visual_motion(message, t_ns)
+            case "/visitor/sighting":
+                yield ros.sighting(message, t_ns)
+            case "/visitor/standpoint":
+                yield ros.standpoint(message, t_ns)
+            case "/visitor/retraction":
+                yield ros.retraction(message, t_ns)
             case "/ground_truth/odom":
                 yield ros.true_pose(message, t_ns)
             case "/camera/image/compressed":

@@ -22,6 +22,9 @@ from tracker.measurements import (
     MagSample,
     Measurement,
     Picture,
+    Retraction,
+    Sighting,
+    Standpoint,
     TruePose,
     Vector3,
     VisualMotion,
@@ -134,6 +137,13 @@ class LogWriter:
                 self._frame(measurement)
             case VisualMotion():
                 self._put("/camera/motion", _motion(measurement), t_ns)
+            case Sighting():
+                self._put("/visitor/sighting", _sighting(measurement), t_ns)
+            case Standpoint():
+                self._put("/visitor/standpoint", _standpoint(measurement), t_ns)
+            case Retraction():
+                header = ros.header(measurement.t_ns, "map")
+                self._put("/visitor/retraction", ros.message(ros.RETRACTION, header=header), t_ns)
             case _:
                 raise ValueError(f"logs do not hold {type(measurement).__name__}")
 
@@ -278,6 +288,21 @@ def _motion(motion: VisualMotion) -> ros.RosMessage:
         parallax_px=motion.parallax_px,
         is_keyframe=motion.is_keyframe,
     )
+
+
+def _sighting(seen: Sighting) -> ros.RosMessage:
+    return ros.message(
+        ros.SIGHTING,
+        header=ros.header(seen.t_ns, "camera_optical_frame"),
+        point=ros.vector(seen.point_site_m, "Point"),
+        ray=ros.vector(seen.ray_cam),
+        sigma_rad=seen.sigma_rad,
+    )
+
+
+def _standpoint(said: Standpoint) -> ros.RosMessage:
+    place = ros.vector(said.p_site_m, "Point")
+    return ros.message(ros.STANDPOINT, header=ros.header(said.t_ns, "map"), place=place, sigma_m=said.sigma_m)
 
 
 def _odometry(truth: TruePose) -> ros.RosMessage:

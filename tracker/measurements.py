@@ -173,15 +173,16 @@ class Standpoint:
     sigma_m: float
 
 
+@dataclass(frozen=True, slots=True)
+class Retraction:
+    """Somebody has taken back what was said last: the newest sighting or standpoint that was not taken back yet."""
+
+    t_ns: int
+    t_recv_ns: int
+
+
+Said: TypeAlias = Sighting | Standpoint | Retraction
+"""What visitors say."""
 Measurement: TypeAlias = (
-    ImuSample
-    | MagSample
-    | CompassHeading
-    | GpsFix
-    | GpsVelocity
-    | Frame
-    | VisualMotion
-    | Sighting
-    | Standpoint
-    | TruePose
+    ImuSample | MagSample | CompassHeading | GpsFix | GpsVelocity | Frame | VisualMotion | Said | TruePose
 )

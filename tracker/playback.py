@@ -3,12 +3,13 @@
 Sans-I/O but for the log that it reads: no thread and no clock. The same log and the same commands give the same poses.
 """
 
+from bisect import bisect_left
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 from tracker.estimator import Pose, Snapshot
-from tracker.measurements import Frame, ImuSample, Measurement
+from tracker.measurements import Frame, ImuSample, Measurement, Outcome, Said
 from tracker.pipeline import Pipeline
 from tracker.upright import Upright
 
@@ -57,6 +58,9 @@ class Playback:
         self._messages: Iterator[Measurement] = iter(())
         self._next: Measurement | None = None
         self._t_fed_ns = 0
+        self._said: list[Said] = []
+        """What visitors say of this walk, by when they said it: as if it were in the recording."""
+        self._said_fed = 0
 
     def choose(self, estimator: str) -> None:
         """Begin anew with an estimator, at the start of the log."""
@@ -72,8 +76,23 @@ class Playback:
         self.pipeline.restore(checkpoint.pipeline)
         self._upright.restore(checkpoint.upright)
         self._t_fed_ns = checkpoint.t_ns
+        self._said_fed = bisect_left(self._said, checkpoint.t_ns, key=_arrival)
         self._messages = iter(self._recording.messages(start_ns=checkpoint.t_ns))
         self._next = next(self._messages, None)
+
+    def say(self, said: Said) -> Outcome:
+        """Take what a visitor says here, now and whenever the walk comes by this place again; return what became of it."""
+        t_ns = self._t_fed_ns
+        while self.t_next_ns == t_ns:
+            self.step()  # what is said comes after all of its time, as it will when it is said again
+        said = replace(said, t_recv_ns=t_ns)
+        outcome = self.pipeline.step(said)
+        if outcome in (Outcome.USED, Outcome.WAITING):
+            self._checkpoints = [checkpoint for checkpoint in self._checkpoints if checkpoint.t_ns <= t_ns]
+            del self._said[self._said_fed :]  # what was said later on was said of another past
+            self._said.append(said)
+            self._said_fed += 1
+        return outcome
 
     @property
     def t_next_ns(self) -> int | None:
@@ -87,6 +106,9 @@ class Playback:
             return None
         # never between two messages of one time: going back to that time would feed the first of them twice
         is_later = measurement.t_recv_ns > self._t_fed_ns
+        while self._said_fed < len(self._said) and self._said[self._said_fed].t_recv_ns < measurement.t_recv_ns:
+            self.pipeline.step(self._said[self._said_fed])
+            self._said_fed += 1
         if is_later and measurement.t_recv_ns - self._checkpoints[-1].t_ns >= CHECKPOINT_S * 1e9:
             state = (self.pipeline.snapshot(), self._upright.snapshot())
             self._checkpoints.append(_Checkpoint(measurement.t_recv_ns, *state))
@@ -98,3 +120,7 @@ class Playback:
         if not isinstance(measurement, Frame):
             return None
         return Shown(measurement, self.pipeline.predict(measurement.t_ns), self._upright.quarter_turns)
+
+
+def _arrival(said: Said) -> int:
+    return said.t_recv_ns

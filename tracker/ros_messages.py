@@ -18,6 +18,9 @@ from tracker.measurements import (
     ImuSample,
     MagSample,
     Matrix,
+    Retraction,
+    Sighting,
+    Standpoint,
     TruePose,
     Vector3,
     VisualMotion,
@@ -32,6 +35,7 @@ IMU, MAG, COMPASS = "sensor_msgs/msg/Imu", "sensor_msgs/msg/MagneticField", "geo
 FIX, VELOCITY, ODOMETRY = "sensor_msgs/msg/NavSatFix", "geometry_msgs/msg/TwistStamped", "nav_msgs/msg/Odometry"
 IMAGE, VIDEO = "sensor_msgs/msg/CompressedImage", "foxglove_msgs/msg/CompressedVideo"
 MOTION = "agora_msgs/msg/VisualMotion"
+SIGHTING, STANDPOINT, RETRACTION = (f"agora_msgs/msg/{name}" for name in ("Sighting", "Standpoint", "Retraction"))
 SENTENCE = "nmea_msgs/msg/Sentence"
 CAMERA_INFO, TF = "sensor_msgs/msg/CameraInfo", "tf2_msgs/msg/TFMessage"
 
@@ -49,10 +53,25 @@ float64 parallax_px
 bool is_keyframe
 """
 
+#: Ours: what visitors say. `header.stamp` is of the picture that they point at, or when they say it.
+_SIGHTING_DEFINITION = """std_msgs/Header header
+geometry_msgs/Point point
+geometry_msgs/Vector3 ray
+float64 sigma_rad
+"""
+_STANDPOINT_DEFINITION = """std_msgs/Header header
+geometry_msgs/Point place
+float64 sigma_m
+"""
+_RETRACTION_DEFINITION = "std_msgs/Header header\n"
+
 TYPES = get_typestore(Stores.ROS2_HUMBLE)
 TYPES.register(get_types_from_msg(_VIDEO_DEFINITION, VIDEO))
 TYPES.register(get_types_from_msg(_SENTENCE_DEFINITION, SENTENCE))
 TYPES.register(get_types_from_msg(_MOTION_DEFINITION, MOTION))
+TYPES.register(get_types_from_msg(_SIGHTING_DEFINITION, SIGHTING))
+TYPES.register(get_types_from_msg(_STANDPOINT_DEFINITION, STANDPOINT))
+TYPES.register(get_types_from_msg(_RETRACTION_DEFINITION, RETRACTION))
 
 NS = 1_000_000_000
 
@@ -170,6 +189,21 @@ def visual_motion(m: RosMessage, t_recv_ns: int) -> VisualMotion:
         float(m.parallax_px),
         bool(m.is_keyframe),
     )
+
+
+def sighting(m: RosMessage, t_recv_ns: int) -> Sighting:
+    """Return a landmark that somebody pointed out."""
+    return Sighting(stamp_ns(m.header.stamp), t_recv_ns, _xyz(m.point), _xyz(m.ray), float(m.sigma_rad))
+
+
+def standpoint(m: RosMessage, t_recv_ns: int) -> Standpoint:
+    """Return where somebody said to stand."""
+    return Standpoint(stamp_ns(m.header.stamp), t_recv_ns, _xyz(m.place), float(m.sigma_m))
+
+
+def retraction(m: RosMessage, t_recv_ns: int) -> Retraction:
+    """Return that somebody took a word back."""
+    return Retraction(stamp_ns(m.header.stamp), t_recv_ns)
 
 
 def true_pose(m: RosMessage, t_recv_ns: int) -> TruePose:

@@ -20,9 +20,10 @@ from typing import Literal
 
 from tracker.errors import InputError
 from tracker.estimator import Snapshot
-from tracker.measurements import Frame, Measurement, VisualMotion
+from tracker.measurements import Frame, Measurement, Said, VisualMotion
 from tracker.pipeline import FrontEnd
 from tracker.playback import Playback, Recording, Shown
+from tracker.said import refusal_words
 
 #: Messages read ahead: half a second of a 400 Hz IMU.
 _READ_AHEAD = 200
@@ -133,7 +134,7 @@ class VisionThread:
         self._thread.join()
 
 
-Action = Literal["play", "pause", "seek", "speed", "estimator"]
+Action = Literal["play", "pause", "seek", "speed", "estimator", "say"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -299,6 +300,17 @@ class Player:
                 self._state = replace(self._state, estimator=str(value))
                 self._seek(self._state.position_s)
                 return True
+            case "say":
+                self._say(value)
+                return False
+
+    def _say(self, said: object) -> None:
+        """Take what a visitor says. While paused its effect is seen once half a second more was played."""
+        if not isinstance(said, Said):
+            raise InputError(f"Visitors say sightings and standpoints, not {said!r}.")
+        refused = refusal_words(self._playback.say(said), self._state.estimator)
+        if refused is not None:
+            raise InputError(refused)
 
     def _seek(self, position_s: float) -> None:
         """Jump: from the last checkpoint the estimator runs up to the place, and the picture there is shown."""

@@ -11,6 +11,9 @@ from tracker.measurements import (
     ImuSample,
     MagSample,
     Measurement,
+    Retraction,
+    Sighting,
+    Standpoint,
     TruePose,
     VisualMotion,
 )
@@ -40,6 +43,8 @@ class Soundness:
         usual_ns = self._lateness_ns.setdefault(kind, max(0, late_ns))
         if late_ns > usual_ns + _CLOCK_TOLERANCE_NS:
             return "stamp_after_arrival"
+        if isinstance(measurement, Sighting | Standpoint | Retraction):
+            return None  # people point at one picture twice, and at an older one after a newer
         last_ns = self._last_ns.get(kind)
         if last_ns is not None and measurement.t_ns <= last_ns:
             return "duplicate_stamp" if measurement.t_ns == last_ns else "stamp_went_back"
@@ -64,5 +69,9 @@ def _is_finite(measurement: Measurement) -> bool:
         case VisualMotion():
             numbers = (*measurement.direction_key, measurement.parallax_px)
             return bool(np.all(np.isfinite(measurement.R_key_cam))) and all(map(isfinite, numbers))
+        case Sighting():
+            return all(map(isfinite, (*measurement.point_site_m, *measurement.ray_cam, measurement.sigma_rad)))
+        case Standpoint():
+            return all(map(isfinite, (*measurement.p_site_m, measurement.sigma_m)))
         case _:
             return True

@@ -5,7 +5,7 @@ import pytest
 from tracker.estimator import Estimator
 from tracker.estimators import build
 from tracker.levelled import Levelled
-from tracker.measurements import Measurement
+from tracker.measurements import Measurement, Outcome, Sighting, Standpoint
 from tracker.rig import Rig
 from tracker.simulate import AGORA_ORIGIN, START_NS, Walk, WalkSettings, default_rig, simulate
 
@@ -60,3 +60,17 @@ def test_going_back_to_before_the_first_pose_finds_the_same_lift(measurements: l
         levelled.restore(fresh)
         assert levelled.predict(START_NS + 20 * S) is None
     assert seen[0] == seen[1]
+
+
+def test_what_visitors_say_of_heights_is_lowered_as_poses_are_lifted(measurements: list[Measurement]) -> None:
+    levelled, other = Levelled(_other("gps-imu/precise"), EYES_M), _other("gps-imu/precise")
+    for measurement in measurements:
+        levelled.step(measurement)
+        other.step(measurement)
+    t_ns = measurements[-1].t_ns
+    lift_m = _height_m(levelled, t_ns) - _height_m(other, t_ns)
+    assert abs(lift_m) > 0.1
+    for of, up_m in ((levelled, lift_m), (other, 0.0)):
+        assert of.step(Sighting(t_ns, t_ns, (9.0, 9.0, 3.0 + up_m), (0.0, 0.0, 1.0), 0.3)) is Outcome.USED
+        assert of.step(Standpoint(t_ns, t_ns, (1.0, 2.0, 1.0 + up_m), 0.3)) is Outcome.USED
+    assert levelled.snapshot()[0][1].waiting == other.snapshot()[1].waiting

@@ -90,7 +90,7 @@ def test_reads_back_what_was_written(whole: Path) -> None:
     assert [m.yaw_rad for m in got if isinstance(m, CompassHeading)] == pytest.approx([1.0] * 30)
     assert not log.skipped
     assert log.info.counts == {
-        "imu": 300, "mag": 30, "compass": 30, "gps": 3, "gps_velocity": 3, "frames": 30, "motions": 0, "truth": 300
+        "imu": 300, "mag": 30, "compass": 30, "gps": 3, "gps_velocity": 3, "frames": 30, "motions": 0, "said": 0, "truth": 300
     }  # fmt: skip
     assert log.info.truth_origin == ORIGIN
     assert log.rig.camera == CAMERA

@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 from tracker.errors import InputError
+from tracker.estimator import Estimator
 from tracker.estimators import build
-from tracker.measurements import Frame, Measurement
+from tracker.measurements import Frame, Measurement, Outcome, Retraction, Sighting, Standpoint
 from tracker.pictures import ArrayPicture
 from tracker.pipeline import Pipeline
 from tracker.playback import Playback, Shown
+from tracker.retractable import Retractable
 from tracker.runner import Player, PlayerState, ReadAhead, VisionThread
 from tracker.simulate import AGORA_ORIGIN, START_NS, Walk, WalkSettings, default_rig, simulate
 from tracker.upright import Upright
@@ -26,7 +28,7 @@ class Recorded:
     """A recording in memory."""
 
     def __init__(self) -> None:
-        walk = Walk(WalkSettings(seed=2, duration_s=SECONDS, still_s=2.0), RIG)
+        self.walk = walk = Walk(WalkSettings(seed=2, duration_s=SECONDS, still_s=2.0), RIG)
         rng = np.random.default_rng(0)
         wall = rng.integers(0, 255, (480, 1280, 3), np.uint8)
         pictures: list[Measurement] = [
@@ -35,6 +37,11 @@ class Recorded:
         ]
         self._measurements = sorted([*simulate(walk), *pictures], key=lambda m: m.t_recv_ns)
         self.end_ns = self._measurements[-1].t_recv_ns
+
+    def landmark(self, t_ns: int) -> Sighting:
+        """Return what a visitor says who points at a landmark 30 m straight ahead."""
+        x, y, z, _ = (self.walk.T_site_cam(t_ns) @ np.array([0.0, 0.0, 30.0, 1.0])).tolist()
+        return Sighting(t_ns, 0, (x, y, z), (0.0, 0.0, 1.0), 0.01)
 
     def messages(self, *, start_ns: int | None = None) -> Iterable[Measurement]:
         """Return those from a time on."""
@@ -51,6 +58,13 @@ def _pipeline(name: str) -> Pipeline:
     estimator = build(name, origin=AGORA_ORIGIN, rig=RIG, declination_rad=0.0, truth_origin=AGORA_ORIGIN)
     camera = RIG.camera
     return Pipeline(estimator, VisionFrontEnd(camera) if camera else None)
+
+
+def _listening(name: str) -> Pipeline:
+    def make() -> Estimator:
+        return build(name, origin=AGORA_ORIGIN, rig=RIG, declination_rad=0.0)
+
+    return Pipeline(Retractable(make))
 
 
 def _run(playback: Playback) -> list[Shown]:
@@ -78,6 +92,51 @@ def test_a_seek_shows_what_a_straight_run_shows(recorded: Recorded, name: str) -
         playback.rewind_to(START_NS + second * 1_000_000_000)
         for shown in _run(playback):
             assert _key(shown) == straight[shown.frame.frame_id]
+
+
+def test_what_is_said_of_a_place_is_said_again_when_the_walk_comes_by(recorded: Recorded) -> None:
+    """A landmark and a place: from every checkpoint as in the straight run, and never before they were said."""
+    playback = Playback(recorded, START_NS, _listening, Upright(RIG))
+    playback.choose("gps-imu/precise")
+    silent = {shown.frame.frame_id: _key(shown) for shown in _run(playback)}
+    playback.rewind_to(START_NS)
+    told: dict[int, tuple[object, ...]] = {}
+    while playback.t_next_ns is not None:
+        shown = playback.step()
+        if shown is None:
+            continue
+        told[shown.frame.frame_id] = _key(shown)
+        t_ns = shown.frame.t_ns
+        if shown.frame.frame_id == 7 * 12:
+            assert playback.say(recorded.landmark(t_ns)) is Outcome.USED
+        elif shown.frame.frame_id == 11 * 12:
+            assert playback.say(Standpoint(t_ns, 0, (1.0, 1.0, 1.65), 0.5)) is Outcome.USED
+    changed = [number for number in told if told[number] != silent[number]]
+    assert min(changed) > 7 * 12
+    assert len(changed) > 60
+    for second in (14, 3, 8, 0):
+        playback.rewind_to(START_NS + second * 1_000_000_000)
+        for shown in _run(playback):
+            assert _key(shown) == told[shown.frame.frame_id]
+
+
+def test_a_word_taken_back_leaves_the_walk_as_it_was(recorded: Recorded) -> None:
+    playback = Playback(recorded, START_NS, _listening, Upright(RIG))
+    playback.choose("gps-imu/precise")
+    silent = {shown.frame.frame_id: _key(shown) for shown in _run(playback)}
+    playback.rewind_to(START_NS + 8_000_000_000)
+    shown = playback.step()
+    while shown is None:
+        shown = playback.step()
+    t_ns = shown.frame.t_ns
+    assert playback.say(Retraction(t_ns, 0)) is Outcome.REJECTED_STALE
+    assert playback.say(recorded.landmark(t_ns)) is Outcome.USED
+    for _ in range(500):
+        playback.step()
+    assert playback.say(Retraction(t_ns, 0)) is Outcome.USED
+    rest = _run(playback)
+    assert len(rest) > 40
+    assert all(_key(shown) == silent[shown.frame.frame_id] for shown in rest)
 
 
 def test_threads_change_nothing(recorded: Recorded) -> None:
@@ -142,7 +201,11 @@ def test_commands(recorded: Recorded) -> None:
     assert state.estimator == "gps-imu/cmm"
     assert shown.pose is not None
     assert shown.pose.motion_model == "P1R1"
-    for action, value in (("seek", "soon"), ("seek", -1.0), ("speed", float("nan")), ("estimator", "kalman")):
+    seen = Sighting(0, 0, (1.0, 2.0, 3.0), (0.0, 0.0, 1.0), 0.01)
+    with pytest.raises(InputError, match="gps-imu/cmm takes no alignment"):
+        player.command("say", seen).result(10.0)
+    nonsense = (("seek", "soon"), ("seek", -1.0), ("speed", float("nan")), ("estimator", "kalman"), ("say", "here"))
+    for action, value in nonsense:
         with pytest.raises(InputError):
             player.command(action, value).result(10.0)  # type: ignore[arg-type]
     assert player.state.estimator == "gps-imu/cmm"

@@ -297,6 +297,10 @@ class Engine:
 
     # -- what people and the ground say -------------------------------------------------------------------------------
 
+    def recalls(self, seen: Sighting) -> bool:
+        """Whether a sighting of some time ago can still be taken: as seen from now, by the way since."""
+        return self.hypotheses is not None and self._landmarks.recalls(seen)
+
     def _take_sighting(self, seen: Sighting) -> None:
         assert self.hypotheses is not None
         for one in self._landmarks.see(seen, self._eye.ray_body(seen.ray_cam)):

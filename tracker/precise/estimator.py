@@ -119,7 +119,10 @@ class PreciseEstimator:
             self._memory = self.memory() or self._memory
             self._begin()  # nobody knows what the rig has done in between
         if not self._timeline.add(measurement):
-            return Outcome.REJECTED_STALE
+            if not isinstance(measurement, Sighting) or not self._engine.recalls(measurement):
+                return Outcome.REJECTED_STALE
+            self._take(measurement, None)  # somebody looked at the picture for a while
+            return Outcome.USED
         if isinstance(measurement, VisualMotion):
             self._timeline.add(Keyframe(measurement.t_key_ns))
             if measurement.is_keyframe:

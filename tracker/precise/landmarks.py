@@ -2,24 +2,26 @@
 
 The first one is taken with metres of doubt, and a line of sight seen so near is not straight in them: it counts for little. Once
 others have told the place, it is worth its own sigma, and is taken again as seen from now: the way walked since is known well. So
-each makes the others worth more, until all are worth what they can be.
+each makes the others worth more, until all are worth what they can be. One that is told late, because somebody looked at a picture
+for a while before pointing at it, is taken in the same way: as seen from now.
 """
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import inf, sqrt
+from math import dist, hypot, inf, sqrt
 
 import numpy as np
 
-from tracker.geometry import conjugate, multiply, normalise, rotate
+from tracker.geometry import conjugate, multiply, rotate
 from tracker.measurements import Matrix, Sighting, Vector3, Wxyz
 from tracker.precise import observations
 from tracker.precise.error_model import P
 from tracker.precise.error_state import Correction, ErrorState
 from tracker.precise.navigation import Navigation
+from tracker.precise.way import KEPT_S, Way
 
 #: Sightings older than this are not taken again: the way since is not known well enough.
-REMEMBERED_S = 60.0
+REMEMBERED_S = KEPT_S
 #: Nearer than this, m, a direction is that of a step.
 NEAREST_M = 0.5
 #: Where the heading is known as well as this, rad, nobody points at what is behind them.
@@ -28,6 +30,8 @@ FACING_RAD = 0.5
 DISCOUNTED = 1.5
 #: and is taken again once it is raised by so much less: what was taken before then hardly counts.
 WORTH_IT = 0.6
+#: The way walked since a sighting is known to about this share of it.
+WAY_SHARE = 0.05
 #: Rounds in which those that are remembered are taken again, at most.
 _ROUNDS = 6
 
@@ -48,21 +52,24 @@ class Landmarks:
     def __init__(self, lever_body_m: Vector3) -> None:
         self._lever = lever_body_m
         self._seen: list[_Seen] = []
-        self._walked_m: Vector3 = (0.0, 0.0, 0.0)
-        self._turned: Wxyz = (1.0, 0.0, 0.0, 0.0)
+        self._way = Way()
 
     def moved(self, before: Navigation, after: Navigation) -> None:
         """Take a step of the strapdown integral, corrections left out."""
-        (ax, ay, az), (bx, by, bz), (x, y, z) = before.p_m, after.p_m, self._walked_m
-        self._walked_m = (x + bx - ax, y + by - ay, z + bz - az)
-        step = multiply(conjugate(before.wxyz_site_body), after.wxyz_site_body)
-        self._turned = normalise(multiply(self._turned, step))
+        self._way.moved(before, after)
+
+    def recalls(self, sighting: Sighting) -> bool:
+        """Whether the way since a sighting is known, and it is a new one."""
+        told = {(one.sighting.t_ns, one.sighting.point_site_m) for one in self._seen}
+        return (sighting.t_ns, sighting.point_site_m) not in told and self._way.at(sighting.t_ns) is not None
 
     def see(self, sighting: Sighting, ray_body: Vector3) -> Iterator[_Seen]:
-        """Take a new one; yield it and those that are to be corrected by again, each after the one before was."""
+        """Take one of now, or one that is recalled; yield it and those to be corrected by again, each after the one before was."""
         oldest_ns = sighting.t_ns - round(REMEMBERED_S * 1e9)
         self._seen = [one for one in self._seen if one.sighting.t_ns >= oldest_ns]
-        new = _Seen(sighting, ray_body, self._walked_m, self._turned)
+        way = self._way
+        _, walked_m, turned = way.at(sighting.t_ns) or (0, way.walked_m, way.turned)
+        new = _Seen(sighting, ray_body, walked_m, turned)
         self._seen.append(new)
         yield new
         for _ in range(_ROUNDS):
@@ -73,11 +80,11 @@ class Landmarks:
 
     def correct(self, filter_: ErrorState, seen: _Seen) -> Correction | None:
         """Take a sighting in, as it would be seen from the present pose; None where it is worth no more than it was before."""
-        since = multiply(conjugate(self._turned), seen.turned)
+        since = multiply(conjugate(self._way.turned), seen.turned)
         ray, lever = rotate(since, seen.ray_body), rotate(since, self._lever)
         x, y, z = (
             point + now - then
-            for point, now, then in zip(seen.sighting.point_site_m, self._walked_m, seen.walked_m, strict=True)
+            for point, now, then in zip(seen.sighting.point_site_m, self._way.walked_m, seen.walked_m, strict=True)
         )
         to = np.array((x, y, z)) - filter_.nav.p_m
         distance_m = float(np.linalg.norm(to))
@@ -87,7 +94,9 @@ class Landmarks:
             reject_nis = filter_.settings.reject_nis
             return Correction(reject_nis, -reject_nis, used=False)
         sigma_rad = seen.sighting.sigma_rad
-        discount = float(np.hypot(1.0, _bend_rad(filter_.covariance[P, P], to) / sigma_rad))
+        walked_m = dist(self._way.walked_m, seen.walked_m)
+        way_rad = WAY_SHARE * walked_m / distance_m
+        discount = hypot(1.0, _bend_rad(filter_.covariance[P, P], to) / sigma_rad, way_rad / sigma_rad)
         if discount > WORTH_IT * seen.discount:
             return None
         seen.discount = discount

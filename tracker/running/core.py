@@ -9,7 +9,7 @@ from dataclasses import replace
 from math import hypot, isfinite
 
 from tracker.estimator import Pose
-from tracker.measurements import Frame, GpsFix, ImuSample, Measurement, VisualMotion
+from tracker.measurements import Frame, GpsFix, ImuSample, Measurement, Outcome, Said, VisualMotion
 from tracker.pipeline import Pipeline
 from tracker.rig import Rig
 from tracker.running.guard import Guard
@@ -108,6 +108,15 @@ class WalkCore:
         if not self._guard.withholds(motion, 0.0):
             self._t_fed_ns = motion.t_recv_ns
             self._feed(motion)
+
+    def say(self, said: Said, now_ns: int) -> Outcome:
+        """Take what a visitor says; before the walk has a pipeline nobody can have seen anything."""
+        if self._pipeline is None:
+            return Outcome.REJECTED_WEAK
+        said = replace(said, t_recv_ns=max(self._t_fed_ns + 1, now_ns))
+        self._t_fed_ns = said.t_recv_ns
+        self._record(said)
+        return self._pipeline.step(said)
 
     def note(self, sensor: str, what: str, reason: str, now_ns: int) -> None:
         """Take news of a source: it was `opened`, is `lost`, or has `failed` for good, and why."""

@@ -8,6 +8,7 @@ with the pose of its own capture as soon as it is there; what vision makes of it
 import logging
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future
 from dataclasses import dataclass
 from threading import Event, Thread
 from time import monotonic_ns
@@ -16,7 +17,7 @@ from types import MappingProxyType
 from tracker.blank import blank_picture
 from tracker.errors import MalformedInput
 from tracker.estimator import Pose
-from tracker.measurements import Frame, ImuSample
+from tracker.measurements import Frame, ImuSample, Outcome, Said
 from tracker.pipeline import FrontEnd
 from tracker.playback import Shown
 from tracker.running.core import WalkCore
@@ -96,6 +97,7 @@ class LiveWalk:
         self._core, self._show, self._show_pose, self._recorder = core, show, show_pose, recorder
         self._intake = Intake()
         self._news: deque[tuple[str, str, str]] = deque()
+        self._said: deque[tuple[Said, Future[Outcome]]] = deque()
         self._sources = [SourceThread(source, self._intake.put, self._tell) for source in sources]
         self._has_camera = any(source.name == "camera" for source in sources)
         self._stop = Event()
@@ -133,6 +135,8 @@ class LiveWalk:
             self._vision.close()
         self._shown.close()
         self._showing.join()
+        while self._said:
+            self._said.popleft()[1].cancel()
         if self._recorder is not None:
             self._recorder.close()
 
@@ -168,6 +172,13 @@ class LiveWalk:
         self._news.append((sensor, what, reason))
         self._intake.ring()
 
+    def say(self, said: Said) -> "Future[Outcome]":
+        """Take what a visitor says, on any thread, for fusion; the result is what became of it."""
+        future: Future[Outcome] = Future()
+        self._said.append((said, future))
+        self._intake.ring()
+        return future
+
     # -- fusion -------------------------------------------------------------------------------------------------------
 
     def _run(self) -> None:
@@ -193,6 +204,9 @@ class LiveWalk:
             core.take(sensor, measurement, now_ns)
         for look in batch.looks:
             core.take_look(look.frame, look.motion, now_ns, is_repeated=look.is_repeated)
+        while self._said:
+            said, future = self._said.popleft()
+            future.set_result(core.say(said, now_ns))
         frames = [core.take(sensor, frame, now_ns) for sensor, frame in batch.frames]
         t_ns = monotonic_ns()
         self.pose = core.pose(t_ns)

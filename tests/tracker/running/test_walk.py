@@ -17,7 +17,17 @@ from tracker.errors import InputError, SourceLost
 from tracker.estimator import Pose
 from tracker.evaluate import make_pipeline
 from tracker.log import Log
-from tracker.measurements import Frame, GpsFix, ImuSample, Measurement, Outcome, VisualMotion
+from tracker.measurements import (
+    Frame,
+    GpsFix,
+    ImuSample,
+    Measurement,
+    Outcome,
+    Retraction,
+    Sighting,
+    Standpoint,
+    VisualMotion,
+)
 from tracker.pipeline import Pipeline
 from tracker.playback import Shown
 from tracker.rig import Rig
@@ -71,9 +81,15 @@ def test_a_replay_of_a_live_recording_gives_the_same_poses(log: Log, tmp_path: P
     played = Played(log)
     with LiveWalk(core, [played.source(name) for name in NAMES], show=shown.append, recorder=recorder) as walk:
         until(lambda: len([one for one in shown if one.pose]) > 20)
+        t_ns = shown[-1].frame.t_ns
+        seen = Sighting(t_ns, t_ns, (20.0, 5.0, 3.0), (0.0, 0.0, 1.0), 0.05)
+        for said in (seen, Standpoint(t_ns + 1, t_ns + 1, (0.0, 0.0, 1.65), 5.0), Retraction(t_ns, t_ns)):
+            assert walk.say(said).result(10.0) is Outcome.USED
+        until(lambda: len([one for one in shown if one.pose]) > 30)
         state = walk.state
     again = Log.open(path)
     assert again.info.counts["motions"] > 10
+    assert again.info.counts["said"] == 3
     assert not state.lost
     pipeline = make_pipeline(name, again, AGORA_ORIGIN)
     assert rows_of(pipeline, again.messages()) == rows
