@@ -1,6 +1,7 @@
 """A rig with live sensors: sources, tracker and recording joined to a server, or to none. The live brother of `replay`."""
 
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import CancelledError
 from dataclasses import dataclass, replace
 from pathlib import Path
 from time import monotonic_ns, time_ns
@@ -8,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from server.aligning import Aligner
 from server.console import Console
 from server.messages import ControlReply, ControlRequest
 from server.placing import Placing
@@ -17,7 +19,7 @@ from server.replay import UNCALIBRATED
 from server.standing import FAR_M, distance_m
 from tracker.assembly import assemble
 from tracker.blank import CAMERA
-from tracker.errors import MalformedInput, MissingSensor
+from tracker.errors import InputError, MalformedInput, MissingSensor
 from tracker.estimator import Pose
 from tracker.estimators import check_name, missing_sensors
 from tracker.lens import scaled
@@ -29,11 +31,14 @@ from tracker.running.core import WalkCore
 from tracker.running.health import SensorState
 from tracker.running.recorder import Recorder, as_read, recorded
 from tracker.running.walk import LiveWalk, WalkState
+from tracker.said import refusal_words
 from tracker.sources.source import Source
 from tracker.truth import TruthEstimator
 
 #: Health is sent when a sensor's state changes, and else this often.
 _HEALTH_NS = 1_000_000_000
+#: Fusion takes what is said within milliseconds, unless it has just begun anew.
+_ANSWER_S = 5.0
 #: The best first.
 _PREFERENCE = ("camera-gps-imu/precise", "gps-imu/precise")
 
@@ -81,6 +86,7 @@ class LiveRig:
         """
         names = [source.name for source in sources]
         self._placing = placing
+        self._aligner = Aligner(placing)
         self._has_camera = "camera" in names
         self._recorded_rig = recorded(rig if self._has_camera else replace(rig, camera=None))
         # what is measured by must be, to the last bit, what a replay of the recording will measure by
@@ -133,7 +139,7 @@ class LiveRig:
     def start(self, rig_url: str | None = None, token: str = "") -> None:
         """Start tracking, and connecting where there is a server; the one does not wait for the other."""
         if rig_url is not None:
-            self._link = RigLink(rig_url, token, _refuse)
+            self._link = RigLink(rig_url, token, self._control)
             self._link.send_state(self._description())
         self._walk.start()
 
@@ -195,6 +201,7 @@ class LiveRig:
         presenter = self._presenter or self._make_presenter(shown.frame)
         if presenter is not None:
             pose = self._placing.placed(shown.pose, self.estimator)
+            self._aligner.note(shown.frame, pose)
             position_s = max(0.0, (shown.frame.t_ns - self._t_start_ns) * 1e-9)
             presenter.show(shown, pose, estimator=self.estimator, position_s=position_s)
 
@@ -229,6 +236,23 @@ class LiveRig:
                 "calibrate it anew, the square does not fit."
             )
         return scaled(camera, width_px, height_px)
+
+    def _control(self, request: ControlRequest) -> ControlReply:
+        """Take a viewer's request, on the link's thread."""
+        if request.action != "align":
+            error = "This walk is live: it cannot be paused, sought or changed."
+            return ControlReply(request.request_id, ok=False, error=error)
+        presenter = self._presenter
+        if presenter is None:
+            return ControlReply(request.request_id, ok=False, error="There is no picture yet: wait for the first one.")
+        try:
+            outcome = self._walk.say(self._aligner.said(request, presenter.camera)).result(_ANSWER_S)
+        except InputError as error:
+            return ControlReply(request.request_id, ok=False, error=str(error))
+        except (CancelledError, TimeoutError):
+            return ControlReply(request.request_id, ok=False, error="The tracker does not answer: try again.")
+        refused = refusal_words(outcome, self.estimator)
+        return ControlReply(request.request_id, ok=refused is None, error=refused)
 
     def _tell_health(self) -> None:
         if self._link is None:
@@ -268,9 +292,3 @@ def _choose(estimator: str | None, names: Sequence[str], rig: Rig) -> str:
         name, reason = next(reversed(missing.items()))
         raise MissingSensor(f"This rig cannot run {name}: it has {reason}; see --imu, --gps and --camera.")
     return best
-
-
-def _refuse(request: ControlRequest) -> ControlReply:
-    return ControlReply(
-        request.request_id, ok=False, error="This walk is live: it cannot be paused, sought or changed."
-    )

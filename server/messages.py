@@ -16,16 +16,44 @@ MAX_VIEWER_TEXT: Final = 4 * 1024
 MAX_RIG_TEXT: Final = 64 * 1024
 
 T = TypeVar("T")
-Action = Literal["play", "pause", "seek", "speed", "estimator"]
+Action = Literal["play", "pause", "seek", "speed", "estimator", "align"]
 Seconds: TypeAlias = Annotated[float, Meta(ge=0.0, le=1e9)]
 Name: TypeAlias = Annotated[str, Meta(max_length=256)]
 Sentence: TypeAlias = Annotated[str, Meta(max_length=2000)]
+Metres: TypeAlias = Annotated[float, Meta(ge=-1e5, le=1e5)]
+Pixel: TypeAlias = Annotated[float, Meta(ge=-1.0, le=16384.0)]
+FrameId: TypeAlias = Annotated[int, Meta(ge=0, lt=2**32)]
 
 
 class Ack(Struct, frozen=True, tag_field="type", tag="ack"):
     """A viewer has drawn, or dropped, this frame."""
 
-    frame_id: Annotated[int, Meta(ge=0, lt=2**32)]
+    frame_id: FrameId
+
+
+class Tap(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="tap"):
+    """A visitor has pointed at a landmark in a picture."""
+
+    frame_id: FrameId
+    place_px: tuple[Pixel, Pixel]
+    """Of the picture as stored; (0, 0) is the centre of its first pixel."""
+    sigma_px: Annotated[float, Meta(ge=0.1, le=500.0)]
+    point_site_m: tuple[Metres, Metres, Metres]
+
+
+class Here(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="here"):
+    """A visitor has shown on the plan where the rig is."""
+
+    e_m: Metres
+    n_m: Metres
+    sigma_m: Annotated[float, Meta(ge=0.01, le=100.0)]
+
+
+class TakeBack(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="undo"):
+    """A visitor takes the last tap or place back."""
+
+
+Alignment: TypeAlias = Tap | Here | TakeBack
 
 
 class ControlRequest(Struct, frozen=True, tag_field="type", tag="control"):
@@ -33,8 +61,8 @@ class ControlRequest(Struct, frozen=True, tag_field="type", tag="control"):
 
     request_id: Annotated[str, Meta(min_length=1, max_length=64)]
     action: Action
-    value: float | Name | None = None
-    """Seconds for `seek`, a factor for `speed`, a name for `estimator`."""
+    value: float | Name | Alignment | None = None
+    """Seconds for `seek`, a factor for `speed`, a name for `estimator`, an alignment for `align`."""
 
 
 class ControlReply(Struct, frozen=True, tag_field="type", tag="reply"):

@@ -8,7 +8,7 @@ from tracker.errors import MalformedInput
 from tracker.estimator import Pose
 from tracker.geometry import transform
 from tracker.playback import Shown
-from tracker.rig import Rig
+from tracker.rig import CameraModel, Rig
 
 
 class Presenter:
@@ -18,6 +18,12 @@ class Presenter:
         """`rig` has a camera, if only a guessed one: without intrinsics nothing can be drawn."""
         self._link, self._rig, self._console = link, rig, console
         self._sequence = 0
+
+    @property
+    def camera(self) -> CameraModel:
+        """Of the pictures that are sent."""
+        assert self._rig.camera is not None
+        return self._rig.camera
 
     def show(
         self, shown: Shown, pose: Pose | None, *, estimator: str, position_s: float, did_seek: bool = False

@@ -3,6 +3,7 @@
 from concurrent.futures import CancelledError
 from dataclasses import dataclass, replace
 
+from server.aligning import Aligner
 from server.console import Console
 from server.messages import ControlReply, ControlRequest
 from server.placing import Anchor, Height, Placing
@@ -75,6 +76,7 @@ class Replay:
         self._log, self._settings, self._console = log, settings, console
         self._placing = Placing(site_origin, ground_z_m, eyes_z_m, eye_height_m, settings.anchor, settings.height)
         self._origin = self._placing.origin(log.info.first_fix)
+        self._aligner = Aligner(self._placing)
         self._rig = _display_rig(log)
         self._vision: VisionThread | None = None
         self.estimator = settings.estimator or self._best()
@@ -168,6 +170,7 @@ class Replay:
     def _show(self, shown: Shown, state: PlayerState, did_seek: bool) -> None:
         if self._presenter is not None:
             pose = self._placing.placed(shown.pose, state.estimator)
+            self._aligner.note(shown.frame, pose)
             self._presenter.show(shown, pose, estimator=state.estimator, position_s=state.position_s, did_seek=did_seek)
 
     def _report(self, state: PlayerState) -> None:
@@ -177,6 +180,11 @@ class Replay:
 
     def _control(self, request: ControlRequest) -> ControlReply:
         try:
+            if request.action == "align":
+                assert self._rig.camera is not None  # a guessed one, if none is known
+                said = self._aligner.said(request, self._rig.camera)
+                self.player.command("say", said).result()
+                return ControlReply(request.request_id, ok=True)
             did_seek = self.player.command(request.action, request.value).result()
         except InputError as error:
             return ControlReply(request.request_id, ok=False, error=str(error))

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from tracker.estimator import Pose, Snapshot
-from tracker.measurements import Frame, ImuSample, Measurement, Outcome, Said
+from tracker.measurements import Frame, ImuSample, Measurement, Outcome, Said, Sighting
 from tracker.pipeline import Pipeline
 from tracker.upright import Upright
 
@@ -85,7 +85,8 @@ class Playback:
         t_ns = self._t_fed_ns
         while self.t_next_ns == t_ns:
             self.step()  # what is said comes after all of its time, as it will when it is said again
-        said = replace(said, t_recv_ns=t_ns)
+        # a landmark was seen in its picture; everything else is said of now
+        said = replace(said, t_recv_ns=t_ns) if isinstance(said, Sighting) else replace(said, t_ns=t_ns, t_recv_ns=t_ns)
         outcome = self.pipeline.step(said)
         if outcome in (Outcome.USED, Outcome.WAITING):
             self._checkpoints = [checkpoint for checkpoint in self._checkpoints if checkpoint.t_ns <= t_ns]

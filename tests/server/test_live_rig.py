@@ -14,7 +14,7 @@ from websockets.sync.connection import Connection
 from server.live_rig import LiveRig
 from server.placing import Placing
 from server.wire import FrameMeta, decode_frame, is_frame
-from tests.server.serving import TOKEN, serving, text_of, until, viewer
+from tests.server.serving import serving, text_of, token, until, viewer
 from tests.walks import write_walk
 from tracker.errors import MissingSensor, UnknownEstimator
 from tracker.estimator import Origin
@@ -45,7 +45,7 @@ def watching(
     played = Played(log)
     rig = LiveRig([played.source(name) for name in names], options.pop("rig", log.rig), placing, **options)
     with serving(folder) as server:
-        rig.start(server.rig_url("walk"), TOKEN)
+        rig.start(server.rig_url("walk"), token("rig", "walk"))
         try:
             until(lambda: rig.link is not None and rig.link.connected)
             with viewer(server) as connection:
@@ -138,3 +138,31 @@ def test_what_no_estimator_can_do_is_refused_before_anything_starts(wall: Log) -
         LiveRig([played.source("imu")], wall.rig, PLACING, estimator="gps-imu/famm")
     with pytest.raises(UnknownEstimator):
         LiveRig([played.source("imu")], wall.rig, PLACING, estimator="nonsense")
+
+
+def ask(connection: Connection, action: str, value: object) -> dict[str, Any]:
+    """Send a request and return its reply."""
+    connection.send(json.dumps({"type": "control", "request_id": "x", "action": action, "value": value}))
+    return text_of(connection, "reply")
+
+
+def test_a_landmark_is_pointed_out_and_taken_back(wall: Log, tmp_path: Path) -> None:
+    """In a picture that was shown; what is recorded holds both."""
+    path = tmp_path / "aligned.mcap"
+    with watching(wall, tmp_path, record=path) as connection:
+        meta = frame_where(connection, lambda meta: meta.pose_valid)
+        ahead = (meta.T_site_cam @ np.array([0.0, 0.0, 30.0, 1.0]))[:3].tolist()
+        tap = {"kind": "tap", "frame_id": meta.frame_id, "place_px": [320, 240], "sigma_px": 4, "point_site_m": ahead}
+        assert ask(connection, "align", tap)["ok"]
+        assert ask(connection, "align", {"kind": "here", "e_m": 0.0, "n_m": 0.0, "sigma_m": 50.0})["ok"]
+        assert ask(connection, "align", {"kind": "undo"})["ok"]
+        assert ask(connection, "align", {"kind": "undo"})["ok"]
+        nothing = ask(connection, "align", {"kind": "undo"})
+        assert not nothing["ok"]
+        assert "within a minute" in nothing["error"]
+        never = ask(connection, "align", tap | {"frame_id": 4_000_000})
+        assert "newer one" in never["error"]
+        outside = ask(connection, "align", tap | {"place_px": [900, 240]})
+        assert "outside the picture" in outside["error"]
+        assert "live" in ask(connection, "pause", None)["error"]
+    assert Log.open(path).info.counts["said"] == 5

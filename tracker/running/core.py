@@ -9,7 +9,7 @@ from dataclasses import replace
 from math import hypot, isfinite
 
 from tracker.estimator import Pose
-from tracker.measurements import Frame, GpsFix, ImuSample, Measurement, Outcome, Said, VisualMotion
+from tracker.measurements import Frame, GpsFix, ImuSample, Measurement, Outcome, Said, Sighting, VisualMotion
 from tracker.pipeline import Pipeline
 from tracker.rig import Rig
 from tracker.running.guard import Guard
@@ -113,8 +113,10 @@ class WalkCore:
         """Take what a visitor says; before the walk has a pipeline nobody can have seen anything."""
         if self._pipeline is None:
             return Outcome.REJECTED_WEAK
-        said = replace(said, t_recv_ns=max(self._t_fed_ns + 1, now_ns))
-        self._t_fed_ns = said.t_recv_ns
+        t_ns = max(self._t_fed_ns + 1, now_ns)
+        # a landmark was seen in its picture; everything else is said of now
+        said = replace(said, t_recv_ns=t_ns) if isinstance(said, Sighting) else replace(said, t_ns=t_ns, t_recv_ns=t_ns)
+        self._t_fed_ns = t_ns
         self._record(said)
         return self._pipeline.step(said)
 
