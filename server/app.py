@@ -1,15 +1,18 @@
 """The FastAPI application, put together from what it is given. No globals, no settings read, no thread."""
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
-from time import monotonic_ns
+from time import monotonic, monotonic_ns
 from typing import Any, Final
 
 from fastapi import FastAPI
 from fastapi.telemetry import TelemetryConfig
+from starlette.types import Scope
 
-from server.auth import Tokens
+from server.access import Access
+from server.entrance import entrance_routes
 from server.guards import Guard
+from server.limits import Limits, Throttle, Visitors
 from server.routes import Bundle, api_routes, log_routes, page_routes
 from server.sessions import MAX_SESSIONS, MAX_VIEWERS, Sessions
 from server.sockets import socket_routes
@@ -30,23 +33,25 @@ def create_app(
     web_folder: Path,
     models_folder: Path,
     site: Mapping[str, Any],
-    rig_tokens: Iterable[str],
-    viewer_tokens: Iterable[str] | None = None,
+    access: Access,
+    limits: Limits | None = None,
     allowed_hosts: Collection[str] = LOOPBACK_HOSTS,
+    any_address: bool = False,
     console_url: str | None = None,
     logs: Mapping[str, Path] | None = None,
     max_sessions: int = MAX_SESSIONS,
     max_viewers: int = MAX_VIEWERS,
 ) -> FastAPI:
-    """Return the server's application; `app.state.sessions` are its sessions.
+    """Return the server's application; `app.state` has its `sessions`, its `access`, and its `visitors` for the door.
 
     Args:
         web_folder: The built pages (`web/dist`); where they are missing the pages say so.
         models_folder: Where the `*.glb` of `/models/` lie.
         site: What `/api/site` answers, see `server/site_facts.py`.
-        rig_tokens: Any of these lets a rig push.
-        viewer_tokens: Any of these lets a viewer watch; None lets everybody, which is right on loopback only.
-        allowed_hosts: Names in the Host header that are us; `*` for any.
+        access: Who may do what.
+        limits: How much one address may ask; None for the usual.
+        allowed_hosts: Names in the Host header that are us.
+        any_address: Whether an IP address there is taken for ours as well: where the server is bound to all of them.
         console_url: Where `/console` leads, if anywhere.
         logs: The recorded walks that `/api/logs` offers, by session name.
         max_sessions: Sessions at a time.
@@ -55,13 +60,19 @@ def create_app(
     sessions = Sessions(monotonic_ns, max_sessions, max_viewers)
     # The interactive documentation loads its scripts from elsewhere, so there is none; /openapi.json stays.
     app = FastAPI(title="Agora", docs_url=None, redoc_url=None, telemetry=_NO_TELEMETRY)
-    app.state.sessions = sessions
-    app.include_router(api_routes(sessions, site, web_folder))
-    app.include_router(log_routes(logs or {}))
-    app.include_router(page_routes(web_folder, models_folder, console_url))
-    app.include_router(
-        socket_routes(sessions, Tokens(rig_tokens), None if viewer_tokens is None else Tokens(viewer_tokens))
-    )
+    app.state.sessions, app.state.access = sessions, access
+    app.state.visitors = Visitors(limits or Limits(), monotonic)
+    app.include_router(api_routes(sessions, site, web_folder, access))
+    app.include_router(log_routes(logs or {}, access))
+    app.include_router(entrance_routes(access))
+    app.include_router(page_routes(web_folder, models_folder, console_url, access))
+    app.include_router(socket_routes(sessions, access))
     app.mount("/", Bundle(directory=web_folder, check_dir=False), name="bundle")
-    app.add_middleware(Guard, allowed_hosts=allowed_hosts)
+    app.add_middleware(Throttle, visitors=app.state.visitors, large_bodies=_is_upload)
+    app.add_middleware(Guard, allowed_hosts=allowed_hosts, any_address=any_address)
     return app
+
+
+def _is_upload(scope: Scope) -> bool:
+    """Whether a request brings a walk: its route has a limit of its own."""
+    return bool(scope["method"] == "PUT" and scope["path"].startswith("/api/logs/"))

@@ -37,6 +37,7 @@ from server.options import (
     site_with,
 )
 from server.serve_command import serve
+from server.token_command import token
 from tracker.errors import InputError
 from tracker.estimators import check_name
 from tracker.fuzzy import INDICES, LEVELS, NEXT_INDEX, rules_by_name
@@ -54,6 +55,7 @@ app.command()(live_commands.walk)
 app.command()(live_commands.track)
 app.command()(live_commands.record)
 app.command()(serve)
+app.command()(token)
 app.command()(doctor)
 app.add_typer(calibrate, name="calibrate")
 out = Console(highlight=False)

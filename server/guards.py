@@ -1,5 +1,6 @@
 """What every request passes first: the Host and Origin checks, and the headers that confine our pages. ASGI, no routes."""
 
+import ipaddress
 from collections.abc import Collection
 from urllib.parse import urlsplit
 
@@ -33,11 +34,16 @@ SECURITY_HEADERS = {
 }
 
 
+#: Methods that change nothing; everything else, and every WebSocket, is for our own pages and for programs.
+_READING = ("GET", "HEAD", "OPTIONS")
+
+
 class Guard:
     """Turns away other hosts' names (DNS rebinding) and other sites' pages, and adds the security headers."""
 
-    def __init__(self, app: ASGIApp, allowed_hosts: Collection[str]) -> None:
-        self._app = app
+    def __init__(self, app: ASGIApp, allowed_hosts: Collection[str], any_address: bool = False) -> None:
+        """`any_address` lets an IP address pass as a Host: no page of another name can be behind it."""
+        self._app, self._any_address = app, any_address
         self._allowed_hosts = frozenset(host.lower() for host in allowed_hosts)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -45,7 +51,7 @@ class Guard:
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
-        fault = self._fault(Headers(scope=scope), scope["type"])
+        fault = self._fault(Headers(scope=scope), changes=scope.get("method") not in _READING)
         if scope["type"] == "websocket":
             if fault:
                 await WebSocket(scope, receive, send).send_denial_response(PlainTextResponse(fault, 403))
@@ -63,13 +69,13 @@ class Guard:
         app = PlainTextResponse(fault, 403) if fault else self._app
         await app(scope, receive, send_with_headers)
 
-    def _fault(self, headers: Headers, kind: str) -> str | None:
+    def _fault(self, headers: Headers, *, changes: bool) -> str | None:
         host = headers.get("host", "")
         name = _host_name(host)
-        if name is None or ("*" not in self._allowed_hosts and name not in self._allowed_hosts):
+        if name is None or not (name in self._allowed_hosts or (self._any_address and _is_address(name))):
             return "This server does not go by that name: use the address that it printed."
         origin = headers.get("origin")
-        if kind == "websocket" and origin is not None and origin.lower().partition("://")[2] != host.lower():
+        if changes and origin is not None and origin.lower().partition("://")[2] != host.lower():
             return "Only this server's own pages may connect."
         return None
 
@@ -80,3 +86,11 @@ def _host_name(host: str) -> str | None:
         return urlsplit(f"//{host}").hostname
     except ValueError:
         return None
+
+
+def _is_address(name: str) -> bool:
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return True

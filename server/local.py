@@ -3,19 +3,21 @@
 from collections.abc import Mapping
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Final, Self
 
 from assets.site import Site
+from server.access import Access
 from server.app import create_app
-from server.auth import new_token
 from server.console import Console
 from server.errors import ConsoleUnavailable
 from server.site_facts import site_facts
 from server.web_server import WebServer
 
+_YEAR_S: Final = 366 * 86_400
+
 
 class LocalServer:
-    """A server on loopback for one rig, which `token` lets in. Use it as a context manager: leaving it frees the ports."""
+    """A server on loopback for the rigs of this program. Use it as a context manager: leaving it frees the ports."""
 
     def __init__(
         self, site: Site, console: Console, *, port: int, web: Path, logs: Mapping[str, Path] | None = None
@@ -27,12 +29,12 @@ class LocalServer:
         """
         models = site.folder / "built"
         self._console = console
-        self.token = new_token()
+        self._access = Access.for_loopback()
         app = create_app(
             web_folder=web,
             models_folder=models,
             site=site_facts(site, models),
-            rig_tokens=[self.token],
+            access=self._access,
             console_url=self._start_console(),
             logs=logs,
         )
@@ -57,6 +59,11 @@ class LocalServer:
     def rig_url(self, session: str) -> str:
         """Return the address for `RigLink`."""
         return self._server.rig_url(session)
+
+    def rig_token(self, session: str) -> str:
+        """Return the token for `RigLink`: this server ends before it does."""
+        signer = self._access.signer
+        return signer.issue("rig", int(signer.now_s()) + _YEAR_S, session)
 
     def __enter__(self) -> Self:
         self._server.__enter__()

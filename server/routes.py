@@ -3,12 +3,15 @@
 from collections.abc import Mapping
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Final
+from typing import Annotated, Any, Final
 
-from fastapi import APIRouter, HTTPException, Request, Response
+from fastapi import APIRouter, Depends, HTTPException, Request, Response
 from fastapi.responses import FileResponse, JSONResponse, PlainTextResponse, RedirectResponse
 from starlette.staticfiles import StaticFiles
 
+from server.access import Access, known, needs
+from server.grants import Grant
+from server.metrics import Metrics
 from server.sessions import NAME, Session, Sessions
 from server.wire import VERSION
 
@@ -26,7 +29,7 @@ class Bundle(StaticFiles):
         """Skip the base's check that the folder exists."""
 
 
-def page_routes(web_folder: Path, models_folder: Path, console_url: str | None) -> APIRouter:
+def page_routes(web_folder: Path, models_folder: Path, console_url: str | None, access: Access) -> APIRouter:
     """Return the pages and the models."""
     router = APIRouter(include_in_schema=False)
     models = Bundle(directory=models_folder, check_dir=False)
@@ -49,7 +52,7 @@ def page_routes(web_folder: Path, models_folder: Path, console_url: str | None) 
     def replay(name: str) -> Response:
         return page("ar.html")
 
-    @router.get("/console")
+    @router.get("/console", dependencies=[Depends(needs(access, "operate"))])
     def console() -> Response:
         if console_url is None:
             return PlainTextResponse("The operator's console is not running.", 404)
@@ -67,9 +70,9 @@ def page_routes(web_folder: Path, models_folder: Path, console_url: str | None) 
     return router
 
 
-def log_routes(logs: Mapping[str, Path]) -> APIRouter:
-    """Return the list of the recorded walks that are served, by session name, and the walks themselves."""
-    router = APIRouter()
+def log_routes(logs: Mapping[str, Path], access: Access) -> APIRouter:
+    """Return the list of the recorded walks that are served, by session name, and the walks themselves: personal data."""
+    router = APIRouter(dependencies=[Depends(needs(access, "operate"))])
 
     @router.get("/api/logs")
     def all_logs() -> dict[str, Any]:
@@ -85,9 +88,9 @@ def log_routes(logs: Mapping[str, Path]) -> APIRouter:
     return router
 
 
-def api_routes(sessions: Sessions, site: Mapping[str, Any], web_folder: Path) -> APIRouter:
+def api_routes(sessions: Sessions, site: Mapping[str, Any], web_folder: Path, access: Access) -> APIRouter:
     """Return the JSON interface, health, readiness and metrics."""
-    router = APIRouter()
+    router, page = APIRouter(), Metrics(sessions)
 
     @router.get("/api/version")
     async def program_version() -> dict[str, Any]:
@@ -98,29 +101,26 @@ def api_routes(sessions: Sessions, site: Mapping[str, Any], web_folder: Path) ->
         return dict(site)
 
     @router.get("/api/sessions")
-    async def all_sessions() -> dict[str, Any]:
-        return {"sessions": [session.describe() for session in sessions]}
+    async def all_sessions(grant: Annotated[Grant, Depends(known(access))]) -> dict[str, Any]:
+        return {"sessions": [session.describe() for session in sessions if grant.allows("watch", session.name)]}
 
     @router.get("/health")
-    async def health() -> JSONResponse:
+    async def health(request: Request) -> JSONResponse:
         report = [_health(session, sessions.now_ns()) for session in sessions]
         # A replay that somebody has paused is well, too.
         ok = any(entry["connected"] and (entry["frames_flow"] or not entry["playing"]) for entry in report)
-        return JSONResponse({"ok": ok, "sessions": report}, 200 if ok else 503)
+        # whoever is asked only whether all is well need not know who walks where
+        told = {"ok": ok, "sessions": report} if access.allows(request.headers, "operate") else {"ok": ok}
+        return JSONResponse(told, 200 if ok else 503)
 
     @router.get("/ready")
     async def ready() -> JSONResponse:
         ok = (web_folder / "ar.html").is_file()
         return JSONResponse({"ok": ok, "reason": None if ok else _NOT_BUILT}, 200 if ok else 503)
 
-    @router.get("/metrics")
-    async def metrics() -> PlainTextResponse:
-        lines = [f"agora_sessions {sum(1 for _ in sessions)}"]
-        for session in sessions:
-            lines.append(f'agora_frames_total{{session="{session.name}"}} {session.frames}')
-            lines.append(f'agora_viewers{{session="{session.name}"}} {len(session.viewers)}')
-            lines.append(f'agora_rig_connected{{session="{session.name}"}} {int(session.connected)}')
-        return PlainTextResponse("\n".join(lines) + "\n")
+    @router.get("/metrics", dependencies=[Depends(needs(access, "operate"))])
+    async def metrics() -> Response:
+        return Response(page.page(), media_type=page.content_type)
 
     return router
 

@@ -61,5 +61,7 @@ def serve(
         signal(number, lambda *_: stop.set())
     with Serving(configuration, place, web) as serving:
         out.print(f"Agora is at {serving.url}", soft_wrap=True)
+        out.print(f"Its operator enters, once and within ten minutes, by {serving.first_url()}", soft_wrap=True)
+        out.print("Everybody else by a token: agora token viewer, agora token rig --session NAME", soft_wrap=True)
         sys.stdout.flush()
         stop.wait()

@@ -3,16 +3,21 @@
 import logging
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Final, Self
 
 from assets.site import Site
+from server.access import Access
 from server.app import create_app
-from server.auth import new_token
 from server.configuration import Configuration
+from server.grants import Grant
+from server.secret_file import secret_of
 from server.site_facts import site_facts
 from server.web_server import WebServer
 
 _logger = logging.getLogger(__name__)
+
+
+_FIRST_STAY_S: Final = 12 * 3600
 
 
 class Serving:
@@ -23,17 +28,18 @@ class Serving:
 
         Raises:
             PortInUse, AddressUnavailable: The server cannot listen there.
+            InputError: The secret cannot be kept.
         """
         models = site.folder / "built"
-        self.token = new_token()
-        """Lets rigs in, and viewers where strangers can reach the server."""
+        # on loopback too: a proxy may stand there, and behind it everybody
+        self._access = Access.with_secret(secret_of(configuration.data_folder))
         app = create_app(
             web_folder=web,
             models_folder=models,
             site=site_facts(site, models),
-            rig_tokens=[self.token],
-            viewer_tokens=None if configuration.on_loopback else [self.token],
+            access=self._access,
             allowed_hosts=configuration.hosts,
+            any_address=not configuration.on_loopback,
             max_sessions=configuration.max_sessions,
             max_viewers=configuration.max_viewers,
         )
@@ -43,6 +49,11 @@ class Serving:
     def url(self) -> str:
         """The address of the pages on this machine, ending in a slash."""
         return self._server.url
+
+    def first_url(self) -> str:
+        """Return an address that makes whoever opens it first, within ten minutes, an administrator for twelve hours."""
+        t_end_s = int(self._access.signer.now_s()) + _FIRST_STAY_S
+        return f"{self.url}enter?code={self._access.codes.new(Grant('admin', None, t_end_s))}"
 
     def __enter__(self) -> Self:
         self._server.__enter__()

@@ -49,7 +49,7 @@ class Showing:
 
     def __enter__(self) -> Self:
         self._server.__enter__()
-        self._replay.start(self._server.rig_url(self._session), self._server.token)
+        self._replay.start(self._server.rig_url(self._session), self._server.rig_token(self._session))
         return self
 
     def check(self) -> None:

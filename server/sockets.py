@@ -12,10 +12,11 @@ from fastapi import APIRouter, WebSocket
 from starlette.responses import PlainTextResponse
 from starlette.websockets import WebSocketDisconnect
 
-from server.auth import Tokens
-from server.errors import MalformedMessage, ServerFull, UnknownSession
+from server.access import Access
+from server.errors import MalformedMessage, ServerFull, TokenRefused, UnknownSession
 from server.fanout import Mailbox
-from server.messages import Ack, parse_from_viewer
+from server.grants import Grant
+from server.messages import Ack, ControlReply, encode, parse_from_viewer
 from server.sessions import Session, Sessions
 
 MALFORMED: Final = 1007
@@ -24,17 +25,25 @@ TRY_LATER: Final = 1013
 FORBIDDEN: Final = 4403
 NO_SESSION: Final = 4404
 
+_ONLY_WATCHES: Final = "Only the walker and operators control a walk; this token watches."
+_EXPIRED: Final = "The token that let you in has expired."
+
 _Take = Callable[[str | bytes], None]
 
 
-def socket_routes(sessions: Sessions, rig_tokens: Tokens, viewer_tokens: Tokens | None) -> APIRouter:
-    """Return both sockets; without `viewer_tokens` everybody who reaches the server may watch."""
+def socket_routes(sessions: Sessions, access: Access) -> APIRouter:
+    """Return both sockets."""
     router = APIRouter()
 
     @router.websocket("/ws/rig/{name}")
     async def rig(websocket: WebSocket, name: str) -> None:
-        if not rig_tokens.allows_header(websocket.headers.get("authorization")):
-            await _deny(websocket, 403, "A rig needs a token of this server: see `agora token`.")
+        try:
+            grant = access.rig_of(websocket.headers)
+        except TokenRefused as exc:
+            await _deny(websocket, 401, str(exc))
+            return
+        if not grant.allows("publish", name):
+            await _deny(websocket, 403, "This token is not a rig's of this session: see `agora token rig`.")
             return
         try:
             session = sessions.open(name)
@@ -42,13 +51,18 @@ def socket_routes(sessions: Sessions, rig_tokens: Tokens, viewer_tokens: Tokens 
             await _deny(websocket, 404 if isinstance(exc, UnknownSession) else 503, str(exc))
             return
         await websocket.accept()
-        await _serve_rig(websocket, session, sessions.now_ns)
+        await _serve_rig(websocket, session, access.left_s(grant), sessions.now_ns)
 
     @router.websocket("/ws/view/{name}")
     async def view(websocket: WebSocket, name: str) -> None:
         await websocket.accept()
-        if viewer_tokens is not None and not viewer_tokens.allows(websocket.query_params.get("token")):
-            await websocket.close(FORBIDDEN, "watching needs a token of this server")
+        try:
+            grant = access.grant_of(websocket.headers)
+        except TokenRefused as exc:
+            await websocket.close(FORBIDDEN, _reason(str(exc)))
+            return
+        if not grant.allows("watch", name):
+            await websocket.close(FORBIDDEN, "This token is for another session.")
             return
         mailbox = Mailbox()
         try:
@@ -58,12 +72,12 @@ def socket_routes(sessions: Sessions, rig_tokens: Tokens, viewer_tokens: Tokens 
             code = NO_SESSION if isinstance(exc, UnknownSession) else TRY_LATER
             await websocket.close(code, _reason(str(exc)))
             return
-        await _serve_viewer(websocket, session, mailbox)
+        await _serve_viewer(websocket, session, mailbox, grant, access.left_s(grant))
 
     return router
 
 
-async def _serve_rig(websocket: WebSocket, session: Session, now_ns: Callable[[], int]) -> None:
+async def _serve_rig(websocket: WebSocket, session: Session, left_s: float | None, now_ns: Callable[[], int]) -> None:
     def take(message: str | bytes) -> None:
         if isinstance(message, str):
             session.take_text(message)
@@ -73,33 +87,41 @@ async def _serve_rig(websocket: WebSocket, session: Session, now_ns: Callable[[]
     mailbox = Mailbox()
     session.attach_rig(mailbox)
     try:
-        await _exchange(websocket, mailbox, take)
+        await _exchange(websocket, mailbox, take, left_s)
     finally:
         session.detach_rig(mailbox)
 
 
-async def _serve_viewer(websocket: WebSocket, session: Session, mailbox: Mailbox) -> None:
+async def _serve_viewer(
+    websocket: WebSocket, session: Session, mailbox: Mailbox, grant: Grant, left_s: float | None
+) -> None:
     def take(message: str | bytes) -> None:
         if isinstance(message, bytes):
             raise MalformedMessage("a viewer sends text only")
         parsed = parse_from_viewer(message)
         if isinstance(parsed, Ack):
             mailbox.acknowledge(parsed.frame_id)
-        else:
+        elif grant.allows("control", session.name):
             session.control(mailbox, parsed)
+        else:
+            mailbox.put_text(encode(ControlReply(parsed.request_id, ok=False, error=_ONLY_WATCHES)))
 
     try:
-        await _exchange(websocket, mailbox, take)
+        await _exchange(websocket, mailbox, take, left_s)
     finally:
         session.leave(mailbox)
 
 
-async def _exchange(websocket: WebSocket, mailbox: Mailbox, take: _Take) -> None:
-    """Read and write until the peer leaves, sends what is malformed, or the mailbox is closed."""
+async def _exchange(websocket: WebSocket, mailbox: Mailbox, take: _Take, left_s: float | None) -> None:
+    """Read and write until the peer leaves, sends what is malformed, its time is over, or the mailbox is closed."""
+    loop = asyncio.get_running_loop()
+    end = None if left_s is None else loop.call_later(left_s, mailbox.close, FORBIDDEN, _EXPIRED)
     tasks = [asyncio.create_task(_read(websocket, mailbox, take)), asyncio.create_task(_write(websocket, mailbox))]
     try:
         await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
     finally:
+        if end is not None:
+            end.cancel()
         for task in tasks:
             task.cancel()
         results = await asyncio.gather(*tasks, return_exceptions=True)

@@ -10,6 +10,7 @@ from base64 import urlsafe_b64decode, urlsafe_b64encode
 from binascii import Error as NotBase64
 from collections.abc import Callable
 from hashlib import sha256
+from time import time_ns
 from typing import Final, Literal
 
 import msgspec
@@ -36,7 +37,7 @@ class _Payload(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Signer:
     """Makes and reads a server's tokens."""
 
-    def __init__(self, secret: bytes, now_s: Callable[[], float]) -> None:
+    def __init__(self, secret: bytes, now_s: Callable[[], float] = lambda: time_ns() * 1e-9) -> None:
         """`now_s` is the wall clock, seconds since 1970: tokens outlive the program."""
         if len(secret) < SECRET_BYTES:
             raise ValueError(f"expected a secret of at least {SECRET_BYTES} bytes, got {len(secret)}")

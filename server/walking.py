@@ -93,7 +93,7 @@ class Walking:
         self._server = None
         if web is not None and console is not None:
             self._server = LocalServer(site, console, port=port, web=web)
-            self._rig_url, token = self._server.rig_url(session), self._server.token
+            self._rig_url, token = self._server.rig_url(session), self._server.rig_token(session)
         self._token, self._session = token, session
         try:
             self.rig = LiveRig(

@@ -11,6 +11,7 @@ from typing import Final, Self
 import uvicorn
 from fastapi import FastAPI
 
+from server.connections import protocols
 from server.errors import AddressUnavailable, PortInUse, ServerError
 from server.sessions import Sessions
 from server.wire import MAX_FRAME_BYTES
@@ -41,7 +42,7 @@ class WebServer:
         self.port: int = self._socket.getsockname()[1]
         config = uvicorn.Config(
             app,
-            ws="websockets-sansio",
+            **protocols(app.state.visitors),
             ws_max_size=MAX_FRAME_BYTES,
             ws_per_message_deflate=False,  # pictures are compressed already
             access_log=False,

@@ -10,8 +10,8 @@ from pathlib import Path
 from threading import Event
 
 from assets.site import Site
+from server.access import Access
 from server.app import create_app
-from server.auth import new_token
 from server.doctor.facts import FoundDevices, MachineFacts, RigFileFacts
 from server.errors import AddressUnavailable, PortInUse, ServerError
 from server.site_facts import site_facts
@@ -92,7 +92,7 @@ def machine_facts(site: Site, web: Path, *, port: int, record: Path | None, brow
 
 def _server(site: Site, web: Path, port: int) -> WebServer:
     models = site.folder / "built"
-    app = create_app(web_folder=web, models_folder=models, site=site_facts(site, models), rig_tokens=[new_token()])
+    app = create_app(web_folder=web, models_folder=models, site=site_facts(site, models), access=Access.for_loopback())
     return WebServer(app, "127.0.0.1", port)
 
 

@@ -11,11 +11,14 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 from websockets.sync.connection import Connection
 
+from server.access import Access
 from server.app import create_app
+from server.grants import LOCAL
 from server.showing import Showing
+from server.tokens import Issued
 from server.web_server import WebServer
 
-TOKEN = "the-rig's-token"
+ACCESS = Access.with_secret(bytes(32), LOCAL)
 HELD_S = 5.0
 
 
@@ -29,16 +32,20 @@ def serving(folder: Path, **options: Any) -> Iterator[WebServer]:
     (web / "ar.html").write_text("<title>ar</title>")
     (web / "assets" / "ar.js").write_text("0")
     (models / "today.glb").write_bytes(b"glTF")
-    app = create_app(web_folder=web, models_folder=models, site={"name": "Square"}, rig_tokens=[TOKEN], **options)
+    app = create_app(web_folder=web, models_folder=models, site={"name": "Square"}, **{"access": ACCESS, **options})
     with WebServer(app) as server:
         yield server
 
 
-def rig(server: WebServer, session: str = "walk", token: str = TOKEN) -> Connection:
-    """Connect as a rig."""
-    return connect(
-        server.rig_url(session), additional_headers={"Authorization": f"Bearer {token}"}, compression=None, proxy=None
-    )
+def token(role: Issued, session: str | None = None, *, for_s: float = 3600.0) -> str:
+    """Return a token of the servers of these tests."""
+    return ACCESS.signer.issue(role, int(ACCESS.signer.now_s() + for_s), session)
+
+
+def rig(server: WebServer, session: str = "walk", shown: str | None = None) -> Connection:
+    """Connect as a rig, with the session's token or what else is shown."""
+    bearer = {"Authorization": f"Bearer {token('rig', session) if shown is None else shown}"}
+    return connect(server.rig_url(session), additional_headers=bearer, compression=None, proxy=None)
 
 
 def viewer(server: WebServer | Showing, session: str = "walk", **options: Any) -> Connection:

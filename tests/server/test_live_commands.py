@@ -14,7 +14,7 @@ from rich.console import Console
 
 from server.status_screen import as_json, screen
 from server.walking import recording_in, rig_url
-from tests.server.serving import TOKEN, serving, text_of, until, viewer
+from tests.server.serving import serving, text_of, token, until, viewer
 from tests.walks import write_walk
 from tracker.errors import InputError
 from tracker.log import Log
@@ -52,7 +52,9 @@ def lines(process: subprocess.Popen[str]) -> Iterator[dict[str, object]]:
 def test_track_pushes_to_a_server_elsewhere_and_says_how_it_is(sensors: list[str], tmp_path: Path) -> None:
     with serving(tmp_path) as server:
         to = f"ws://127.0.0.1:{server.port}"
-        with running("track", "--to", to, "--token", TOKEN, "--session", "rig-7", *sensors, "--json") as process:
+        with running(
+            "track", "--to", to, "--token", token("rig", "rig-7"), "--session", "rig-7", *sensors, "--json"
+        ) as process:
             told = next(line for line in lines(process) if line["connected"] and line["pose"])
             assert told["estimator"] == "camera-gps-imu/precise"
             assert set(told["sensors"]) == {"gps", "imu", "camera"}  # type: ignore[call-overload]

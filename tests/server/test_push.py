@@ -12,7 +12,7 @@ from server.messages import ControlReply, ControlRequest
 from server.push import RigLink, frame_message, pose_message
 from server.web_server import WebServer
 from server.wire import decode_frame, decode_pose, encode_frame
-from tests.server.serving import TOKEN, bytes_of, rig, serving, text_of, until, viewer
+from tests.server.serving import bytes_of, rig, serving, text_of, token, until, viewer
 from tests.server.wire_examples import TINY_JPEG, example_frame
 from tracker.errors import InputError, MissingSensor
 from tracker.estimator import Pose
@@ -77,7 +77,7 @@ def test_pose_message() -> None:
 
 
 def test_frames_state_and_controls_go_both_ways(tmp_path: Path) -> None:
-    with serving(tmp_path) as server, RigLink(server.rig_url("walk"), TOKEN, obey) as link:
+    with serving(tmp_path) as server, RigLink(server.rig_url("walk"), token("rig", "walk"), obey) as link:
         link.send_state({"kind": "replay", "duration_s": 60.0})
         until(lambda: link.connected)
         with viewer(server) as watching:
@@ -95,7 +95,7 @@ def test_a_link_survives_its_server_and_tells_the_new_one_everything(tmp_path: P
     before = set(threading.enumerate())
     with serving(tmp_path) as first:
         port, app = first.port, first.app
-        link = RigLink(first.rig_url("walk"), TOKEN, obey)
+        link = RigLink(first.rig_url("walk"), token("rig", "walk"), obey)
         link.send_state({"log": "a.mcap"})
         until(lambda: link.connected)
     until(lambda: not link.connected)
@@ -112,22 +112,22 @@ def test_a_link_survives_its_server_and_tells_the_new_one_everything(tmp_path: P
     until(lambda: set(threading.enumerate()) <= before)
 
 
-@pytest.mark.parametrize(("session", "token"), [("walk", "wrong"), ("a%20b", TOKEN)])
-def test_a_refused_link_gives_up(tmp_path: Path, session: str, token: str) -> None:
-    with serving(tmp_path) as server, RigLink(server.rig_url(session), token, obey) as link:
+@pytest.mark.parametrize(("session", "shown"), [("walk", "wrong"), ("a%20b", token("rig", "walk"))])
+def test_a_refused_link_gives_up(tmp_path: Path, session: str, shown: str) -> None:
+    with serving(tmp_path) as server, RigLink(server.rig_url(session), shown, obey) as link:
         until(lambda: link.refused is not None)
         assert "check its token" in str(link.refused)
 
 
 def test_a_replaced_link_does_not_fight_for_its_session(tmp_path: Path) -> None:
-    with serving(tmp_path) as server, RigLink(server.rig_url("walk"), TOKEN, obey) as link:
+    with serving(tmp_path) as server, RigLink(server.rig_url("walk"), token("rig", "walk"), obey) as link:
         until(lambda: link.connected)
         with rig(server):
             until(lambda: link.refused is not None)
 
 
 def test_a_link_without_a_server_closes_at_once() -> None:
-    link = RigLink("ws://127.0.0.1:9/ws/rig/walk", TOKEN, obey)
+    link = RigLink("ws://127.0.0.1:9/ws/rig/walk", token("rig", "walk"), obey)
     for i in range(1000):
         link.send_state({"duration_s": float(i)})
     link.close()

@@ -88,10 +88,17 @@ def test_serve_answers_and_ends_by_sigterm_with_its_journal_in_json(served: "sub
     line = served.stdout.readline()
     assert line.startswith("Agora is at http://127.0.0.1:")
     url = line.split()[-1]
-    until(lambda: httpx.get(f"{url}api/sessions", trust_env=False).json() == {"sessions": []})
+    code = served.stdout.readline().split("code=")[-1].strip()
+    with httpx.Client(base_url=url, trust_env=False) as browser:
+        until(lambda: browser.get("/api/sessions").status_code == 401)
+        entered = browser.get("/enter", params={"code": code})
+        assert (entered.status_code, entered.headers["location"]) == (303, "/")
+        assert browser.get("/api/sessions").json() == {"sessions": []}
     served.send_signal(signal.SIGTERM)
     assert served.wait(20) == 0
-    events = [json.loads(line) for line in served.stderr.read().splitlines()]
+    journal = served.stderr.read()
+    assert code not in journal
+    events = [json.loads(line) for line in journal.splitlines()]
     assert [event["event"] for event in events] == ["serving", "stopping", "stopped"]
     assert events[0]["url"] == url
 

@@ -18,7 +18,7 @@ from server import push
 from server.live_rig import LiveRig
 from server.placing import Placing
 from server.wire import decode_frame, is_frame
-from tests.server.serving import TOKEN, serving, until
+from tests.server.serving import serving, token, until
 from tests.walks import write_walk
 from tracker.log import Log
 from tracker.simulate import AGORA_ORIGIN
@@ -27,11 +27,13 @@ from tracker.sources.played import Played
 _SERVE = """
 import sys
 from pathlib import Path
+from server.access import Access
 from server.app import create_app
+from server.grants import LOCAL
 from server.web_server import WebServer
 from threading import Event
 folder = Path(sys.argv[1])
-app = create_app(web_folder=folder, models_folder=folder, site={}, rig_tokens=[sys.argv[3]])
+app = create_app(web_folder=folder, models_folder=folder, site={}, access=Access.with_secret(bytes(32), LOCAL))
 with WebServer(app, port=int(sys.argv[2])) as server:
     print(server.port, flush=True)
     Event().wait()
@@ -41,7 +43,7 @@ with WebServer(app, port=int(sys.argv[2])) as server:
 @contextmanager
 def server_process(folder: Path, port: int = 0) -> Iterator[tuple[subprocess.Popen[str], int]]:
     """Run a real server in a process of its own; leaving kills it without a word."""
-    command = [sys.executable, "-c", _SERVE, str(folder), str(port), TOKEN]
+    command = [sys.executable, "-c", _SERVE, str(folder), str(port)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
         yield process, int(process.stdout.readline())
@@ -67,7 +69,7 @@ def test_the_rig_tracks_on_while_its_server_is_killed_and_sends_the_newest_first
     """
     rig = live_rig(log)
     with server_process(tmp_path) as (_, port):
-        rig.start(f"ws://127.0.0.1:{port}/ws/rig/walk", TOKEN)
+        rig.start(f"ws://127.0.0.1:{port}/ws/rig/walk", token("rig", "walk"))
         until(lambda: rig.link is not None and rig.link.connected and rig.state.pose is not None)
     before = rig.state.sensors["imu"].count
     sleep(2.5)
@@ -138,7 +140,7 @@ def test_a_network_that_swallows_everything_is_noticed_and_left(
     with serving(tmp_path) as server:
         tunnel = Tunnel(server.port)
         rig = live_rig(log)
-        rig.start(f"ws://127.0.0.1:{tunnel.port}/ws/rig/walk", TOKEN)
+        rig.start(f"ws://127.0.0.1:{tunnel.port}/ws/rig/walk", token("rig", "walk"))
         until(lambda: rig.link is not None and rig.link.connected and rig.state.pose is not None)
         tunnel.swallow.set()
         deadline = monotonic() + 15.0

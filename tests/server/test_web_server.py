@@ -13,12 +13,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
+from server.access import Access
 from server.app import create_app
 from server.errors import AddressUnavailable, PortInUse
 from server.sessions import REPLACED
 from server.web_server import WebServer
 from server.wire import decode_frame, encode_frame, encode_pose
-from tests.server.serving import HELD_S, bytes_of, rig, serving, text_of, until, until_closed, viewer
+from tests.server.serving import HELD_S, bytes_of, rig, serving, text_of, token, until, until_closed, viewer
 from tests.server.wire_examples import TINY_JPEG, example_frame, example_pose
 
 
@@ -82,13 +83,6 @@ def test_another_sites_page_may_not_connect(server: WebServer) -> None:
         viewer(server, origin="http://evil.example")
     with viewer(server, origin=server.url.rstrip("/")) as welcome:
         assert text_of(welcome, "hello")["version"] == 1
-
-
-@pytest.mark.parametrize("token", ["", "wrong", "the-rig's-token-and-more"])
-def test_a_rig_with_a_wrong_token_gets_403(long_lived: WebServer, token: str) -> None:
-    with pytest.raises(InvalidStatus, match="403"):
-        rig(long_lived, "refused", token)
-    assert "refused" not in get(long_lived, "/api/sessions").text
 
 
 def test_a_late_joiner_gets_state_and_newest_frame_at_once(server: WebServer) -> None:
@@ -214,21 +208,12 @@ def test_unknown_sessions_and_names_are_refused(long_lived: WebServer) -> None:
     with viewer(long_lived, "nobody") as lost, pytest.raises(ConnectionClosed):
         lost.recv(HELD_S)
     assert lost.close_code == 4404
-    with pytest.raises(InvalidStatus, match="404"):
-        rig(long_lived, "a%20b")
-
-
-def test_a_server_that_asks_viewers_for_a_token(tmp_path: Path) -> None:
-    with serving(tmp_path, viewer_tokens=["guest"]) as server, rig(server):
-        with viewer(server) as stranger, pytest.raises(ConnectionClosed):
-            stranger.recv(HELD_S)
-        assert stranger.close_code == 4403
-        with viewer(server, "walk?token=guest") as guest:
-            assert text_of(guest, "hello")
+    with pytest.raises(InvalidStatus, match="403"):
+        rig(long_lived, "a%20b", token("rig", "a"))
 
 
 def test_a_port_in_use_is_one_sentence(long_lived: WebServer, tmp_path: Path) -> None:
-    app = create_app(web_folder=tmp_path, models_folder=tmp_path, site={}, rig_tokens=["t"])
+    app = create_app(web_folder=tmp_path, models_folder=tmp_path, site={}, access=Access.for_loopback())
     with pytest.raises(PortInUse, match=rf"^Port {long_lived.port} .* is taken .*--port\.$"):
         WebServer(app, port=long_lived.port)
     with pytest.raises(AddressUnavailable, match=r"203\.0\.113\.1"):
@@ -238,7 +223,7 @@ def test_a_port_in_use_is_one_sentence(long_lived: WebServer, tmp_path: Path) ->
 
 
 def test_pages_that_are_not_built_say_so(tmp_path: Path) -> None:
-    app = create_app(web_folder=tmp_path / "no", models_folder=tmp_path / "no", site={}, rig_tokens=["t"])
+    app = create_app(web_folder=tmp_path / "no", models_folder=tmp_path / "no", site={}, access=Access.for_loopback())
     with WebServer(app) as server:
         assert get(server, "/ar").status_code == 503
         assert "make setup" in get(server, "/").text
