@@ -6,8 +6,10 @@ never old ones. Text is reliable: a receiver that lets more than `MAX_TEXTS` pil
 
 import asyncio
 from collections import deque
+from collections.abc import Callable
 from typing import Final
 
+from server.traffic import Tally
 from server.wire import keep_seek
 
 MAX_UNACKNOWLEDGED: Final = 3
@@ -21,10 +23,15 @@ class Mailbox:
 
     def __init__(self) -> None:
         self._texts: deque[str] = deque()
-        self._frame: tuple[int, bytes] | None = None
-        self._pose: bytes | None = None
+        self._frame: tuple[int, bytes, int | None] | None = None
+        self._pose: tuple[bytes, int | None] | None = None
         self._unacknowledged: deque[int] = deque()
         self._news = asyncio.Event()
+        self.tally = Tally()
+        """What became of frames and poses; receivers of one session share it."""
+        self.sent: Callable[[bool, int], None] = lambda is_frame, t_ns: None
+        """Called when a frame, or a pose, has gone, with when it had arrived."""
+        self._under_way: tuple[bool, int | None] = (False, None)
         self.closing: tuple[int, str] | None = None
         """Code and reason with which the connection is to be closed, once there is one."""
 
@@ -38,14 +45,16 @@ class Mailbox:
         self._texts.append(text)
         self._news.set()
 
-    def put_frame(self, frame_id: int, data: bytes) -> None:
-        """Replace the waiting frame."""
-        self._frame = (frame_id, keep_seek(self._frame[1] if self._frame else None, data))
+    def put_frame(self, frame_id: int, data: bytes, t_ns: int | None = None) -> None:
+        """Replace the waiting frame; `t_ns` is when it arrived."""
+        self.tally.frames_dropped += self._frame is not None
+        self._frame = (frame_id, keep_seek(self._frame[1] if self._frame else None, data), t_ns)
         self._news.set()
 
-    def put_pose(self, data: bytes) -> None:
-        """Replace the waiting pose."""
-        self._pose = data
+    def put_pose(self, data: bytes, t_ns: int | None = None) -> None:
+        """Replace the waiting pose; `t_ns` is when it arrived."""
+        self.tally.poses_dropped += self._pose is not None
+        self._pose = (data, t_ns)
         self._news.set()
 
     def acknowledge(self, frame_id: int) -> None:
@@ -63,18 +72,29 @@ class Mailbox:
         self._news.set()
 
     async def next(self) -> str | bytes | None:
-        """Return what to send next, waiting for it: text before frames before poses; None once closed."""
+        """Return what to send next, waiting for it: text before frames before poses; None once closed.
+
+        Who asks has sent what it was given before.
+        """
+        is_frame, t_ns = self._under_way
+        if t_ns is not None:
+            self._under_way = (False, None)
+            self.sent(is_frame, t_ns)
         while True:
             if self._texts:
                 return self._texts.popleft()
             if self.closing is not None:
                 return None
             if self._frame is not None and len(self._unacknowledged) < MAX_UNACKNOWLEDGED:
-                (frame_id, data), self._frame = self._frame, None
+                (frame_id, data, t_ns), self._frame = self._frame, None
+                self._under_way = (True, t_ns)
                 self._unacknowledged.append(frame_id)
+                self.tally.frames_sent += 1
                 return data
             if self._pose is not None:
-                pose, self._pose = self._pose, None
+                (pose, t_ns), self._pose = self._pose, None
+                self._under_way = (False, t_ns)
+                self.tally.poses_sent += 1
                 return pose
             self._news.clear()
             await self._news.wait()

@@ -8,6 +8,7 @@ from server import messages
 from server.errors import ServerFull, UnknownSession
 from server.fanout import Mailbox
 from server.messages import ControlReply, ControlRequest, StateUpdate
+from server.traffic import Tally, Traffic
 from server.wire import decode_frame, decode_pose, is_frame
 
 MAX_SESSIONS: Final = 16
@@ -39,13 +40,25 @@ _LEFT = "The rig has left: what is shown is the last that it sent."
 class Session:
     """One walk, as the server knows it."""
 
-    def __init__(self, name: str, max_viewers: int = MAX_VIEWERS) -> None:
+    def __init__(
+        self,
+        name: str,
+        max_viewers: int = MAX_VIEWERS,
+        sent: Callable[[bool, int], None] = lambda is_frame, t_ns: None,
+    ) -> None:
         self.name = name
-        self._max_viewers = max_viewers
+        self._max_viewers, self._sent = max_viewers, sent
         self.frames = 0
         """Frames that came from the rig."""
         self.t_frame_ns: int | None = None
         """When the newest came, on the clock that `take_binary` is given."""
+        self.poses = 0
+        """Poses that came from the rig, by themselves."""
+        self.t_pose_ns: int | None = None
+        """When the newest came, by itself or with a frame."""
+        self.received_bytes = 0
+        self.tally = Tally()
+        """What went to viewers."""
         self.viewers: set[Mailbox] = set()
         self._fields = dict(_DEFAULTS)
         self._rig: Mailbox | None = None
@@ -103,16 +116,20 @@ class Session:
     def take_binary(self, data: bytes, t_ns: int) -> None:
         """Take a rig's frame or pose and hand it to every viewer; `MalformedMessage` where it is neither."""
         if is_frame(data):
-            frame_id = decode_frame(data)[0].frame_id
-            self._frame, self.t_frame_ns = (frame_id, data), t_ns
+            meta = decode_frame(data)[0]
+            self._frame, self.t_frame_ns = (meta.frame_id, data), t_ns
             self.frames += 1
+            if meta.pose_valid:
+                self.t_pose_ns = t_ns
             for viewer in self.viewers:
-                viewer.put_frame(frame_id, data)
+                viewer.put_frame(meta.frame_id, data, t_ns)
         else:
             decode_pose(data)
-            self._pose = data
+            self._pose, self.t_pose_ns = data, t_ns
+            self.poses += 1
             for viewer in self.viewers:
-                viewer.put_pose(data)
+                viewer.put_pose(data, t_ns)
+        self.received_bytes += len(data)
 
     # -- the viewers --------------------------------------------------------------------------------------------------
 
@@ -121,6 +138,7 @@ class Session:
         if len(self.viewers) >= self._max_viewers:
             raise ServerFull(f"{self._max_viewers} viewers watch already: try again when one has left.")
         self.viewers.add(viewer)
+        viewer.tally, viewer.sent = self.tally, self._sent
         viewer.put_text(messages.hello(self.describe()))
         if self._frame is not None:
             viewer.put_frame(*self._frame)
@@ -181,6 +199,7 @@ class Sessions:
     ) -> None:
         self.now_ns = now_ns
         """The clock that frames are stamped with."""
+        self.traffic = Traffic()
         self._max_sessions, self._max_viewers = max_sessions, max_viewers
         self._sessions: dict[str, Session] = {}
 
@@ -204,7 +223,7 @@ class Sessions:
             raise UnknownSession("A session's name is 1 to 64 letters, digits, dots, dashes or underscores.")
         if name not in self._sessions:
             self._make_room()
-            self._sessions[name] = Session(name, self._max_viewers)
+            self._sessions[name] = Session(name, self._max_viewers, self._sent)
         return self._sessions[name]
 
     def say_goodbye(self) -> None:
@@ -216,6 +235,10 @@ class Sessions:
     def quiet(self) -> bool:
         """Whether nobody is connected."""
         return not any(session.connected or session.viewers for session in self)
+
+    def _sent(self, is_frame: bool, t_ns: int) -> None:
+        durations = self.traffic.frames if is_frame else self.traffic.poses
+        durations.add((self.now_ns() - t_ns) * 1e-9)
 
     def _make_room(self) -> None:
         if len(self._sessions) < self._max_sessions:

@@ -1,0 +1,99 @@
+"""`/metrics` as Prometheus reads it: figures taken from the sessions at the moment they are asked for."""
+
+from collections.abc import Iterator
+from typing import Final
+
+from prometheus_client import CollectorRegistry, ProcessCollector, generate_latest
+from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, HistogramMetricFamily
+from prometheus_client.metrics_core import Metric
+from prometheus_client.registry import Collector
+
+from server.sessions import Session, Sessions
+from server.traffic import Durations
+
+_COUNTERS: Final = (
+    ("frames", "Frames that came from the rig."),
+    ("poses", "Poses that came from the rig."),
+    ("received_bytes", "Bytes of frames and poses that came from the rig."),
+    ("frames_sent", "Frames that went to viewers, counted for each."),
+    ("frames_dropped", "Frames that a newer one replaced before a viewer could take them."),
+    ("poses_sent", "Poses that went to viewers, counted for each."),
+    ("poses_dropped", "Poses that a newer one replaced before a viewer could take them."),
+)
+_GAUGES: Final = (
+    ("viewers", "Viewers connected."),
+    ("rig_connected", "Whether the rig is connected."),
+    ("frame_age_seconds", "Since the newest frame came."),
+    ("pose_age_seconds", "Since the newest pose came, by itself or with a frame."),
+)
+
+
+class Metrics:
+    """The page of one server."""
+
+    content_type: Final = "text/plain; version=0.0.4; charset=utf-8"
+
+    def __init__(self, sessions: Sessions) -> None:
+        self._registry = CollectorRegistry(auto_describe=False)
+        self._registry.register(_SessionFigures(sessions))
+        ProcessCollector(registry=self._registry)
+
+    def page(self) -> bytes:
+        """Return the page."""
+        return generate_latest(self._registry)
+
+
+class _SessionFigures(Collector):
+    """Nothing is kept here, so a session that is gone leaves no series behind."""
+
+    def __init__(self, sessions: Sessions) -> None:
+        self._sessions = sessions
+
+    def collect(self) -> Iterator[Metric]:
+        """Yield every family."""
+        yield GaugeMetricFamily("agora_sessions", "Sessions, with a rig or without.", value=len(list(self._sessions)))
+        traffic = self._sessions.traffic
+        refused = CounterMetricFamily("agora_refused", "Connections and messages turned away.", labels=["reason"])
+        for reason, count in sorted(traffic.refused.items()):
+            refused.add_metric([reason], count)
+        yield refused
+        yield _histogram("frame", traffic.frames)
+        yield _histogram("pose", traffic.poses)
+        figures = [(session.name, _figures(session, self._sessions.now_ns())) for session in self._sessions]
+        for kind, families in ((CounterMetricFamily, _COUNTERS), (GaugeMetricFamily, _GAUGES)):
+            for name, meaning in families:
+                family = kind(f"agora_{name}", meaning, labels=["session"])
+                for session, values in figures:
+                    if (value := values[name]) is not None:
+                        family.add_metric([session], value)
+                yield family
+
+
+def _histogram(what: str, durations: Durations) -> HistogramMetricFamily:
+    return HistogramMetricFamily(
+        f"agora_{what}_fanout_seconds",
+        f"From a {what}'s arrival at the server to its leaving for one viewer.",
+        buckets=durations.cumulative(),
+        sum_value=durations.sum_s,
+    )
+
+
+def _figures(session: Session, now_ns: int) -> dict[str, float | None]:
+    tally = session.tally
+    return {
+        "frames": session.frames,
+        "poses": session.poses,
+        "received_bytes": session.received_bytes,
+        "frames_sent": tally.frames_sent,
+        "frames_dropped": tally.frames_dropped,
+        "poses_sent": tally.poses_sent,
+        "poses_dropped": tally.poses_dropped,
+        "viewers": len(session.viewers),
+        "rig_connected": int(session.connected),
+        "frame_age_seconds": _age_s(session.t_frame_ns, now_ns),
+        "pose_age_seconds": _age_s(session.t_pose_ns, now_ns),
+    }
+
+
+def _age_s(t_ns: int | None, now_ns: int) -> float | None:
+    return None if t_ns is None else (now_ns - t_ns) * 1e-9

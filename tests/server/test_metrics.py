@@ -1,0 +1,122 @@
+"""`/metrics` as a Prometheus reader takes it: what came, what went, what was dropped, how long it took."""
+
+import asyncio
+
+import pytest
+from prometheus_client.parser import text_string_to_metric_families
+
+from server.fanout import Mailbox
+from server.metrics import Metrics
+from server.sessions import Sessions
+from server.traffic import BOUNDS_S, Durations
+from server.wire import encode_frame, encode_pose
+from tests.server.wire_examples import TINY_JPEG, example_frame, example_pose
+
+
+class Clock:
+    """A clock that is set by hand."""
+
+    ns = 10_000_000_000
+
+    def __call__(self) -> int:
+        return self.ns
+
+
+def samples(sessions: Sessions) -> dict[str, float]:
+    """Return the page's samples by name and labels."""
+    page = Metrics(sessions).page().decode()
+    return {
+        sample.name + "".join(f"|{value}" for value in sample.labels.values()): sample.value
+        for family in text_string_to_metric_families(page)
+        for sample in family.samples
+    }
+
+
+@pytest.fixture
+def clock() -> Clock:
+    return Clock()
+
+
+def frame(frame_id: int) -> bytes:
+    return encode_frame(example_frame(frame_id), TINY_JPEG)
+
+
+def test_what_a_viewer_could_not_take_counts_as_dropped_and_the_rest_by_how_long_it_took(clock: Clock) -> None:
+    sessions, viewer = Sessions(clock), Mailbox()
+    session = sessions.open("walk")
+    session.join(viewer)
+
+    async def play() -> None:
+        assert isinstance(await viewer.next(), str)
+        session.take_binary(frame(1), clock.ns)
+        session.take_binary(frame(2), clock.ns)
+        session.take_binary(encode_pose(example_pose()), clock.ns)
+        assert await viewer.next() == frame(2)
+        clock.ns += 4_000_000
+        assert isinstance(await viewer.next(), bytes)  # who asks has sent the frame
+        clock.ns += 60_000_000
+        session.end(1000, "over")
+        assert isinstance(await viewer.next(), str)
+        assert await viewer.next() is None
+
+    asyncio.run(play())
+    got = samples(sessions)
+    assert got["agora_sessions"] == 1
+    assert got["agora_frames_total|walk"] == 2
+    assert got["agora_poses_total|walk"] == 1
+    assert got["agora_frames_sent_total|walk"] == 1
+    assert got["agora_frames_dropped_total|walk"] == 1
+    assert got["agora_poses_sent_total|walk"] == 1
+    assert got["agora_viewers|walk"] == 1
+    assert got["agora_rig_connected|walk"] == 0
+    assert got["agora_pose_age_seconds|walk"] == pytest.approx(0.064)
+    assert got["agora_received_bytes_total|walk"] == 2 * len(frame(1)) + 112
+    assert (got["agora_frame_fanout_seconds_bucket|0.003"], got["agora_frame_fanout_seconds_bucket|0.005"]) == (0, 1)
+    assert got["agora_frame_fanout_seconds_sum"] == pytest.approx(0.004)
+    assert (got["agora_pose_fanout_seconds_bucket|0.05"], got["agora_pose_fanout_seconds_count"]) == (0, 1)
+
+
+def test_what_a_late_joiner_gets_at_once_is_not_timed(clock: Clock) -> None:
+    sessions, viewer = Sessions(clock), Mailbox()
+    session = sessions.open("walk")
+    session.take_binary(frame(1), clock.ns)
+    clock.ns += 60_000_000_000
+    session.join(viewer)
+
+    async def play() -> None:
+        await viewer.next()
+        assert await viewer.next() == frame(1)
+        viewer.close(1000, "over")
+        await viewer.next()
+
+    asyncio.run(play())
+    got = samples(sessions)
+    assert got["agora_frames_sent_total|walk"] == 1
+    assert got["agora_frame_fanout_seconds_count"] == 0
+    assert got["agora_frame_age_seconds|walk"] == pytest.approx(60.0)
+
+
+def test_a_session_that_made_room_leaves_no_series(clock: Clock) -> None:
+    sessions = Sessions(clock, max_sessions=1)
+    sessions.open("old")
+    sessions.open("new")
+    names = {key.partition("|")[2] for key in samples(sessions) if key.startswith("agora_viewers")}
+    assert names == {"new"}
+
+
+def test_refusals_are_counted_by_reason_and_the_process_is_there(clock: Clock) -> None:
+    sessions = Sessions(clock)
+    sessions.traffic.refused["malformed"] += 2
+    got = samples(sessions)
+    assert got["agora_refused_total|malformed"] == 2
+    assert got["process_resident_memory_bytes"] > 1e6
+    assert got["process_open_fds"] > 0
+
+
+def test_a_duration_falls_into_the_class_whose_end_it_does_not_pass() -> None:
+    durations = Durations()
+    for seconds in (0.0, BOUNDS_S[3], BOUNDS_S[-1] * 2.0):
+        durations.add(seconds)
+    counts = dict(durations.cumulative())
+    assert (counts[str(BOUNDS_S[0])], counts[str(BOUNDS_S[2])], counts[str(BOUNDS_S[3])]) == (1, 1, 2)
+    assert (counts[str(BOUNDS_S[-1])], counts["+Inf"]) == (2, 3)
