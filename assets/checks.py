@@ -8,7 +8,7 @@ from shapely.geometry import Polygon
 from shapely.validation import explain_validity
 
 from assets.errors import SiteError
-from assets.records import Monument, Stop
+from assets.records import Landmark, Monument, Stop
 
 TOUCH_M = 0.1
 """Footprints that reach into each other by up to twice this do not overlap: neighbours share walls, and maps have edges."""
@@ -51,6 +51,23 @@ def check_tour(file: Path, stops: Sequence[Stop], monuments: Sequence[Monument])
             raise SiteError(f"{file}: 'tour[{i}].monument' is {stop.monument!r}, which monuments.toml does not have.")
         if stop.id in {other.id for other in stops[:i]}:
             raise SiteError(f"{file}: 'tour[{i}].id' is {stop.id!r}, which an earlier stop has already.")
+
+
+def check_landmarks(file: Path, landmarks: Sequence[Landmark], monuments: Sequence[Monument]) -> None:
+    """Refuse landmarks of monuments that do not stand today, and two of one id.
+
+    Raises:
+        SiteError: The sentence names file, key and reason.
+    """
+    standing = {m.id for m in monuments if "today" in m.epochs}
+    for i, landmark in enumerate(landmarks):
+        if landmark.monument not in standing:
+            raise SiteError(
+                f"{file}: 'landmark[{i}].monument' is {landmark.monument!r}, which is no monument that stands today: "
+                "visitors can only point at what is there."
+            )
+        if landmark.id in {other.id for other in landmarks[:i]}:
+            raise SiteError(f"{file}: 'landmark[{i}].id' is {landmark.id!r}, which an earlier landmark has already.")
 
 
 def _outline(file: Path, monument: Monument) -> Polygon:

@@ -227,6 +227,16 @@ class Monument:
 
 
 @dataclass(frozen=True)
+class Landmark:
+    """A point that stands today and that visitors can find again."""
+
+    id: str
+    name: Texts
+    monument: str
+    point_m: PointENZ
+
+
+@dataclass(frozen=True)
 class Site:
     """Everything that is known about one site."""
 
@@ -248,6 +258,8 @@ class Site:
     """Closed rounds that visitors walk; whatever stands today keeps clear of them, and of all that a convex one encloses."""
     sights: tuple[PointENZ, ...]
     """What visitors look at: points at the height where they do so."""
+    landmarks: tuple[Landmark, ...]
+    """What visitors may point out to say where they look; a site may have none."""
     terrain: Mapping[str, Any]
     """The ground's description as `assets.terrain` reads it."""
     landscape: Mapping[str, Any]

@@ -6,7 +6,7 @@ The files are written by people and hold degrees where people think in degrees (
 import math
 from pathlib import Path
 
-from assets.checks import check_monuments, check_tour
+from assets.checks import check_landmarks, check_monuments, check_tour
 from assets.monument_reader import FURTHEST_M, read_monument
 from assets.records import (
     KINDS,
@@ -17,6 +17,7 @@ from assets.records import (
     Evidence,
     Figure,
     Footprint,
+    Landmark,
     Monument,
     Order,
     Origin,
@@ -38,6 +39,7 @@ __all__ = [
     "Evidence",
     "Figure",
     "Footprint",
+    "Landmark",
     "Monument",
     "Order",
     "Origin",
@@ -76,12 +78,14 @@ def load_site(folder: Path) -> Site:
         tour=tuple(_stop(row) for row in top.tables("tour")),
         ways=tuple(points(top.file, f"ways[{i}]", way) for i, way in enumerate(top.get("ways", list))),
         sights=sights(top.file, "sights", top.get("sights", list)),
+        landmarks=tuple(_landmark(row) for row in top.tables("landmark")) if "landmark" in top.values else (),
         terrain=top.get("terrain", dict),
         landscape=top.get("landscape", dict) if "landscape" in top.values else {},
         monuments=tuple(read_monument(places.table(key), key, titles) for key in places.values),
     )
     check_monuments(places.file, site.monuments)
     check_tour(top.file, site.tour, site.monuments)
+    check_landmarks(top.file, site.landmarks, site.monuments)
     return site
 
 
@@ -117,3 +121,8 @@ def _stop(table: Table) -> Stop:
         monument=table.get("monument", str),
         text=table.texts("text", LANGUAGES),
     )
+
+
+def _landmark(table: Table) -> Landmark:
+    (point,) = sights(table.file, table.path("point_m"), [table.get("point_m", list)])
+    return Landmark(table.filled("id"), table.texts("name", LANGUAGES), table.get("monument", str), point)

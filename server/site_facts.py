@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from assets.facts import monument_facts
-from assets.site import LANGUAGE, Monument, Reading, Site, Stop, View
+from assets.site import LANGUAGE, Landmark, Monument, Reading, Site, Stop, View
 
 #: A built model: its name and its level of detail, 0 the finest.
 _LEVEL = re.compile(r"(?P<model>[a-z_]+)\.(?P<level>\d)")
@@ -47,6 +47,7 @@ def site_facts(site: Site, models_folder: Path) -> dict[str, Any]:
         "eye_height_m": site.eye_height_m,
         "default_view": _view(site.default_view),
         "tour": [_stop(stop) for stop in site.tour],
+        "landmarks": [_landmark(landmark) for landmark in site.landmarks],
         "evidence": {key: {"en": en, "tr": tr} for key, (en, tr) in _EVIDENCE_WORDS.items()},
         "sources": dict(site.sources),
         "monuments": [_monument(monument) for monument in site.monuments],
@@ -85,6 +86,16 @@ def _view(view: View) -> dict[str, Any]:
 
 def _stop(stop: Stop) -> dict[str, Any]:
     return _view(stop) | {"monument": stop.monument, "text": stop.text[LANGUAGE], "texts": dict(stop.text)}
+
+
+def _landmark(landmark: Landmark) -> dict[str, Any]:
+    return {
+        "id": landmark.id,
+        "name": landmark.name[LANGUAGE],
+        "names": dict(landmark.name),
+        "monument": landmark.monument,
+        "point_site_m": list(landmark.point_m),
+    }
 
 
 def _monument(monument: Monument) -> dict[str, Any]:

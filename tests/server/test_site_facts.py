@@ -81,3 +81,10 @@ def test_evidence_has_words_in_both_languages(facts: dict[str, Any]) -> None:
 
 def test_the_tour_of_a_walk_is_in_the_data(site: Site) -> None:
     assert tour_of(site) == AGORA_TOUR
+
+
+def test_landmarks_are_told_with_their_points(site: Site, facts: dict[str, Any]) -> None:
+    assert len(facts["landmarks"]) == len(site.landmarks) > 0
+    first = facts["landmarks"][0]
+    assert first["point_site_m"] == list(site.landmarks[0].point_m)
+    assert set(first["names"]) == set(LANGUAGES)
