@@ -6,6 +6,7 @@ Each connection has two tasks, one that reads and one that empties its mailbox; 
 import asyncio
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
+from time import monotonic
 from typing import Final
 
 from fastapi import APIRouter, WebSocket
@@ -16,15 +17,23 @@ from server.access import Access
 from server.errors import MalformedMessage, ServerFull, TokenRefused, UnknownSession
 from server.fanout import Mailbox
 from server.grants import Grant
+from server.limits import Bucket
 from server.messages import Ack, ControlReply, encode, parse_from_viewer
 from server.sessions import Session, Sessions
 
 MALFORMED: Final = 1007
+#: "Policy violation", RFC 6455.
+TOO_MUCH: Final = 1008
 TRY_LATER: Final = 1013
 #: Close codes of our own, which a page can read where an HTTP status stays hidden from it.
 FORBIDDEN: Final = 4403
 NO_SESSION: Final = 4404
 
+#: Messages of one connection in the long run, and for how long it may send more than that: acknowledgements come at the rate of
+#: pictures, a rig's messages at that of pictures, poses and changes of state.
+_VIEWER_HZ: Final = 200.0
+_RIG_HZ: Final = 1000.0
+_BURST_S: Final = 5.0
 _ONLY_WATCHES: Final = "Only the walker and operators control a walk; this token watches."
 _EXPIRED: Final = "The token that let you in has expired."
 
@@ -87,7 +96,7 @@ async def _serve_rig(websocket: WebSocket, session: Session, left_s: float | Non
     mailbox = Mailbox()
     session.attach_rig(mailbox)
     try:
-        await _exchange(websocket, mailbox, take, left_s)
+        await _exchange(websocket, mailbox, take, left_s, _RIG_HZ)
     finally:
         session.detach_rig(mailbox)
 
@@ -107,16 +116,19 @@ async def _serve_viewer(
             mailbox.put_text(encode(ControlReply(parsed.request_id, ok=False, error=_ONLY_WATCHES)))
 
     try:
-        await _exchange(websocket, mailbox, take, left_s)
+        await _exchange(websocket, mailbox, take, left_s, _VIEWER_HZ)
     finally:
         session.leave(mailbox)
 
 
-async def _exchange(websocket: WebSocket, mailbox: Mailbox, take: _Take, left_s: float | None) -> None:
-    """Read and write until the peer leaves, sends what is malformed, its time is over, or the mailbox is closed."""
+async def _exchange(websocket: WebSocket, mailbox: Mailbox, take: _Take, left_s: float | None, most_hz: float) -> None:
+    """Read and write until the peer leaves, sends what is malformed or too much, its time is over, or the mailbox is closed."""
     loop = asyncio.get_running_loop()
     end = None if left_s is None else loop.call_later(left_s, mailbox.close, FORBIDDEN, _EXPIRED)
-    tasks = [asyncio.create_task(_read(websocket, mailbox, take)), asyncio.create_task(_write(websocket, mailbox))]
+    tasks = [
+        asyncio.create_task(_read(websocket, mailbox, take, most_hz)),
+        asyncio.create_task(_write(websocket, mailbox)),
+    ]
     try:
         await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
     finally:
@@ -133,10 +145,14 @@ async def _exchange(websocket: WebSocket, mailbox: Mailbox, take: _Take, left_s:
             await websocket.close(mailbox.closing[0], _reason(mailbox.closing[1]))
 
 
-async def _read(websocket: WebSocket, mailbox: Mailbox, take: _Take) -> None:
+async def _read(websocket: WebSocket, mailbox: Mailbox, take: _Take, most_hz: float) -> None:
+    bucket = Bucket(most_hz, _BURST_S * most_hz, monotonic())
     while mailbox.closing is None:
         message = await websocket.receive()
         if message["type"] == "websocket.disconnect":
+            return
+        if not bucket.take(monotonic()):
+            mailbox.close(TOO_MUCH, "too many messages")
             return
         text = message.get("text")
         try:
