@@ -32,6 +32,8 @@ class Mailbox:
         self.sent: Callable[[bool, int], None] = lambda is_frame, t_ns: None
         """Called when a frame, or a pose, has gone, with when it had arrived."""
         self._under_way: tuple[bool, int | None] = (False, None)
+        self.sees = True
+        """Whether it is for somebody who may see pictures that the walker does not share."""
         self.closing: tuple[int, str] | None = None
         """Code and reason with which the connection is to be closed, once there is one."""
 

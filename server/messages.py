@@ -16,7 +16,7 @@ MAX_VIEWER_TEXT: Final = 4 * 1024
 MAX_RIG_TEXT: Final = 64 * 1024
 
 T = TypeVar("T")
-Action = Literal["play", "pause", "seek", "speed", "estimator", "align"]
+Action = Literal["play", "pause", "seek", "speed", "estimator", "align", "share"]
 Seconds: TypeAlias = Annotated[float, Meta(ge=0.0, le=1e9)]
 Name: TypeAlias = Annotated[str, Meta(max_length=256)]
 Sentence: TypeAlias = Annotated[str, Meta(max_length=2000)]
@@ -61,8 +61,8 @@ class ControlRequest(Struct, frozen=True, tag_field="type", tag="control"):
 
     request_id: Annotated[str, Meta(min_length=1, max_length=64)]
     action: Action
-    value: float | Name | Alignment | None = None
-    """Seconds for `seek`, a factor for `speed`, a name for `estimator`, an alignment for `align`."""
+    value: bool | float | Name | Alignment | None = None
+    """Seconds for `seek`, a factor for `speed`, a name for `estimator`, an alignment for `align`, whether to for `share`."""
 
 
 class ControlReply(Struct, frozen=True, tag_field="type", tag="reply"):
@@ -96,6 +96,8 @@ class SessionFields(Struct, frozen=True, kw_only=True):
     anchor: Literal["site", "here"] | UnsetType = UNSET
     notice: Sentence | UnsetType | None = UNSET
     health: dict[Name, Any] | UnsetType = UNSET
+    sharing: bool | UnsetType = UNSET
+    """Whether everybody who watches sees the camera picture; else the walker's own view alone."""
 
     def given(self) -> dict[str, Any]:
         """Return the fields that were given, as JSON values."""
@@ -140,9 +142,9 @@ def encode(message: Struct) -> str:
     return msgspec.json.encode(message).decode()
 
 
-def hello(session: dict[str, Any]) -> str:
-    """Return the first message to a viewer."""
-    return msgspec.json.encode({"type": "hello", "version": VERSION, "session": session}).decode()
+def hello(session: dict[str, Any], *, sees: bool) -> str:
+    """Return the first message to a viewer; `sees` says whether it gets the picture though it is not shared."""
+    return msgspec.json.encode({"type": "hello", "version": VERSION, "sees": sees, "session": session}).decode()
 
 
 def state(session: dict[str, Any]) -> str:

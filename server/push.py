@@ -237,6 +237,8 @@ class RigLink:
             request = parse_control(text)
         except MalformedMessage as exc:
             return ControlReply("", ok=False, error=str(exc)[:500])
+        if request.action == "share":
+            return self._share(request)
         try:
             return self._on_control(request)
         except InputError as exc:
@@ -244,6 +246,13 @@ class RigLink:
         except Exception:
             _logger.exception("a request could not be answered: %s", request)
             return ControlReply(request.request_id, ok=False, error="The rig failed at this: see its log.")
+
+    def _share(self, request: ControlRequest) -> ControlReply:
+        """Let everybody who watches see the picture, or no longer: the rig's own switch, which outlives a server."""
+        if not isinstance(request.value, bool):
+            return ControlReply(request.request_id, ok=False, error="Sharing is switched by true or false.")
+        self.send_state({"sharing": request.value})
+        return ControlReply(request.request_id, ok=True)
 
     def _note_close(self, connection: ClientConnection) -> None:
         if connection.close_code == REPLACED:

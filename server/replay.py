@@ -185,6 +185,7 @@ class Replay:
                 said = self._aligner.said(request, self._rig.camera)
                 self.player.command("say", said).result()
                 return ControlReply(request.request_id, ok=True)
+            assert request.action != "share"  # the link answers that itself
             did_seek = self.player.command(request.action, request.value).result()
         except InputError as error:
             return ControlReply(request.request_id, ok=False, error=str(error))

@@ -8,6 +8,7 @@ from server import messages
 from server.errors import ServerFull, UnknownSession
 from server.fanout import Mailbox
 from server.messages import ControlReply, ControlRequest, StateUpdate
+from server.privacy import without_picture
 from server.traffic import Tally, Traffic
 from server.wire import decode_frame, decode_pose, is_frame
 
@@ -33,6 +34,7 @@ _DEFAULTS: Final[dict[str, Any]] = {
     "anchor": "site",
     "notice": None,
     "health": {},
+    "sharing": False,
 }
 _LEFT = "The rig has left: what is shown is the last that it sent."
 
@@ -63,6 +65,8 @@ class Session:
         self._fields = dict(_DEFAULTS)
         self._rig: Mailbox | None = None
         self._frame: tuple[int, bytes] | None = None
+        self._hidden: bytes | None = None
+        """That frame without its picture, once somebody needed it."""
         self._pose: bytes | None = None
         self._pending: dict[str, tuple[Mailbox, str]] = {}
         self._requests = 0
@@ -87,6 +91,11 @@ class Session:
                 session["playback"] = session["playback"] | {"playing": False}
         return session
 
+    @property
+    def sharing(self) -> bool:
+        """Whether the walker lets everybody who watches see the picture."""
+        return bool(self._fields["sharing"])
+
     # -- the rig ------------------------------------------------------------------------------------------------------
 
     def attach_rig(self, rig: Mailbox) -> None:
@@ -95,21 +104,20 @@ class Session:
             self._rig.close(REPLACED, "another rig took this session")
             self._fail_pending()
         self._rig = rig
-        self._tell()
+        self._change({"sharing": False})  # whoever had it may have shared; this rig says so itself, if it does
 
     def detach_rig(self, rig: Mailbox) -> None:
         """Note that a rig is gone and tell the viewers; nothing happens where another has its place."""
         if self._rig is rig:
             self._rig = None
             self._fail_pending()
-            self._tell()
+            self._change({"sharing": False})  # nobody is left who could switch it off
 
     def take_text(self, text: str) -> None:
         """Take a rig's text message; `MalformedMessage` where it is none."""
         message = messages.parse_from_rig(text)
         if isinstance(message, StateUpdate):
-            self._fields |= message.changes()
-            self._tell()
+            self._change(message.changes())
         else:
             self._relay_reply(message)
 
@@ -118,11 +126,12 @@ class Session:
         if is_frame(data):
             meta = decode_frame(data)[0]
             self._frame, self.t_frame_ns = (meta.frame_id, data), t_ns
+            self._hidden = None
             self.frames += 1
             if meta.pose_valid:
                 self.t_pose_ns = t_ns
             for viewer in self.viewers:
-                viewer.put_frame(meta.frame_id, data, t_ns)
+                self._show(viewer, t_ns)
         else:
             decode_pose(data)
             self._pose, self.t_pose_ns = data, t_ns
@@ -134,14 +143,16 @@ class Session:
     # -- the viewers --------------------------------------------------------------------------------------------------
 
     def join(self, viewer: Mailbox) -> None:
-        """Add a viewer, who gets at once what all the others have; `ServerFull` where there are too many."""
+        """Add a viewer, who gets at once what all the others have; `ServerFull` where there are too many.
+
+        One who does not see (`Mailbox.sees`) gets each frame with an empty picture, unless the walker shares it.
+        """
         if len(self.viewers) >= self._max_viewers:
             raise ServerFull(f"{self._max_viewers} viewers watch already: try again when one has left.")
         self.viewers.add(viewer)
         viewer.tally, viewer.sent = self.tally, self._sent
-        viewer.put_text(messages.hello(self.describe()))
-        if self._frame is not None:
-            viewer.put_frame(*self._frame)
+        viewer.put_text(messages.hello(self.describe(), sees=viewer.sees))
+        self._show(viewer)
         if self._pose is not None:
             viewer.put_pose(self._pose)
 
@@ -170,6 +181,24 @@ class Session:
             viewer.close(code, reason, last)
         if self._rig is not None:
             self._rig.close(code, reason)
+
+    def _show(self, viewer: Mailbox, t_ns: int | None = None) -> None:
+        """Give a viewer the newest frame, as it may see it."""
+        if self._frame is None:
+            return
+        frame_id, data = self._frame
+        if not (viewer.sees or self.sharing):
+            self._hidden = data = self._hidden or without_picture(data)  # made once for all
+        viewer.put_frame(frame_id, data, t_ns)
+
+    def _change(self, fields: dict[str, Any]) -> None:
+        before = self.sharing
+        self._fields |= fields
+        if self.sharing != before:
+            for viewer in self.viewers:
+                if not viewer.sees:
+                    self._show(viewer)  # in the place of one that waits
+        self._tell()
 
     def _tell(self) -> None:
         text = messages.state(self.describe())

@@ -35,6 +35,7 @@ _VIEWER_HZ: Final = 200.0
 _RIG_HZ: Final = 1000.0
 _BURST_S: Final = 5.0
 _ONLY_WATCHES: Final = "Only the walker and operators control a walk; this token watches."
+_NOT_YOURS: Final = "Only the walker can share the camera's picture."
 _EXPIRED: Final = "The token that let you in has expired."
 
 _Take = Callable[[str | bytes], None]
@@ -74,6 +75,7 @@ def socket_routes(sessions: Sessions, access: Access) -> APIRouter:
             await websocket.close(FORBIDDEN, "This token is for another session.")
             return
         mailbox = Mailbox()
+        mailbox.sees = grant.allows("see", name)
         try:
             session = sessions.get(name)
             session.join(mailbox)
@@ -110,10 +112,12 @@ async def _serve_viewer(
         parsed = parse_from_viewer(message)
         if isinstance(parsed, Ack):
             mailbox.acknowledge(parsed.frame_id)
-        elif grant.allows("control", session.name):
-            session.control(mailbox, parsed)
-        else:
+        elif not grant.allows("control", session.name):
             mailbox.put_text(encode(ControlReply(parsed.request_id, ok=False, error=_ONLY_WATCHES)))
+        elif parsed.action == "share" and not grant.allows("see", session.name):
+            mailbox.put_text(encode(ControlReply(parsed.request_id, ok=False, error=_NOT_YOURS)))
+        else:
+            session.control(mailbox, parsed)
 
     try:
         await _exchange(websocket, mailbox, take, left_s, _VIEWER_HZ)
