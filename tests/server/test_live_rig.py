@@ -18,10 +18,15 @@ from tests.server.serving import serving, text_of, token, until, viewer
 from tests.walks import write_walk
 from tracker.errors import MissingSensor, UnknownEstimator
 from tracker.estimator import Origin
+from tracker.evaluate import make_pipeline
+from tracker.geometry import transform
 from tracker.log import Log
+from tracker.measurements import Matrix
+from tracker.playback import Playback
 from tracker.rig import CameraModel, Rig
 from tracker.simulate import AGORA_ORIGIN
 from tracker.sources.played import Played
+from tracker.upright import Upright
 
 PLACING = Placing(AGORA_ORIGIN, lambda e, n: 0.0, lambda e, n: 1.65, 1.65)
 ELSEWHERE = Origin(-43.5, 172.6, 20.0)
@@ -84,6 +89,30 @@ def test_pictures_come_with_poses_and_nothing_is_amiss(wall: Log, tmp_path: Path
         assert {name: one["trouble"] for name, one in session["health"].items()} == dict.fromkeys(
             ("gps", "imu", "camera"), False
         )
+
+
+def test_a_replay_of_the_recording_shows_what_the_viewers_saw(wall: Log, tmp_path: Path) -> None:
+    """Every picture with the same pose, to the last bit: through threads, a file, and the wire."""
+    path, live = tmp_path / "live.mcap", list[FrameMeta]()
+    with watching(wall, tmp_path, record=path) as connection:
+        for _ in range(40):
+            live.append(frame_where(connection, lambda meta: meta.pose_valid))
+    log = Log.open(path)
+    playback = Playback(
+        log,
+        log.info.t_start_ns,
+        lambda name: make_pipeline(name, log, AGORA_ORIGIN, eyes_z_m=PLACING.eyes_z_m),
+        Upright(log.rig),
+    )
+    playback.choose("camera-gps-imu/precise")
+    again: dict[int, Matrix] = {}
+    while playback.t_next_ns is not None:
+        shown = playback.step()
+        if shown is not None and (pose := shown.pose) is not None:
+            again[shown.frame.t_ns] = transform(pose.wxyz_site_body, pose.p_site_m) @ log.rig.T_body_cam
+    assert log.info.counts["motions"] > 20
+    for meta in live:
+        np.testing.assert_array_equal(again[meta.t_capture_ns], meta.T_site_cam)
 
 
 def test_a_live_walk_cannot_be_paused(wall: Log, tmp_path: Path) -> None:
