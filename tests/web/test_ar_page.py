@@ -17,6 +17,7 @@ pytestmark = pytest.mark.browser
 _STATS = {
     *("framesDrawn", "posesDrawn", "mismatchedFrames", "lastFrameId", "lastPoseFrameId", "poseAgeMs"),
     *("motionModel", "estimator", "overlay", "drawCalls", "triangles", "occluders"),
+    *("effort", "drawMs", "sun", "gain"),
 }
 _SAMPLE = """(count) => new Promise((resolve) => {
     const seen = [];

@@ -53,7 +53,7 @@ def ar(browser: Browser) -> Iterator[ArPage]:
 
 def stand(ar: ArPage, showing: Showing) -> None:
     """Show the picture that looks at the wall, with targets in a grid 30 m ahead of it."""
-    ar.page.goto(f"{showing.url}ar")
+    ar.page.goto(f"{showing.url}ar?effort=soft+edges")
     ar.until_drawn()
     if ar.ask("agora.session().playback.playing"):
         ar.pause()

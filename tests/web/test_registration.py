@@ -54,7 +54,7 @@ def renderer() -> Iterator[Renderer]:
 def ar(browser: Browser, showing: Showing) -> Iterator[ArPage]:
     """The AR page, paused."""
     with open_page(browser) as page:
-        page.page.goto(f"{showing.url}ar")
+        page.page.goto(f"{showing.url}ar?effort=full")
         page.until_drawn()
         page.pause()
         yield page

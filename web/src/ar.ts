@@ -1,5 +1,8 @@
 /** The AR page: one session's pictures, each with the square drawn by the pose of that same picture. */
 
+import { Raycaster, Vector3 as Vector } from "three";
+import { Align, type Host } from "./align";
+import type { Alignment } from "./alignment";
 import { Bar } from "./bar";
 import { Care } from "./care";
 import { Composite } from "./composite";
@@ -8,13 +11,15 @@ import { invertRigid, T_gltf_site, transform, type Vector3 } from "./frames";
 import { Guide } from "./guide";
 import { Hud } from "./hud";
 import { project } from "./lens";
+import { Look } from "./look";
 import { SiteMap } from "./map";
 import { Square } from "./model";
 import { loadOccluders } from "./occluders";
-import { NOTHING, type Overlay, Overlays } from "./overlay";
+import { GHOST, NOTHING, type Overlay, Overlays, seenThrough } from "./overlay";
 import type { Request } from "./playback";
 import { parseState, type Session } from "./protocol";
 import { askedName, newestName } from "./session";
+import { type ShareRequest, Sharing } from "./sharing";
 import { parseSite, type Site } from "./site";
 import { Link } from "./socket";
 import { loadEdges } from "./walkable";
@@ -28,6 +33,7 @@ const LOOK_AGAIN_MS = 2000;
 class Page {
   readonly composite = new Composite(element("view", HTMLCanvasElement));
   readonly hud = new Hud();
+  readonly look = new Look(this.composite, new URLSearchParams(location.search));
   readonly ready: Promise<void>;
   frame: FrameMessage | null = null;
   overlay: Overlay = NOTHING;
@@ -39,6 +45,8 @@ class Page {
   private readonly overlays = new Overlays();
   private readonly guide = new Guide();
   private readonly care = new Care();
+  private readonly sharing = new Sharing((request) => this.ask(request));
+  private readonly align = new Align(element("view", HTMLCanvasElement), this.host());
   private link: Link | null = null;
   private readonly bar = new Bar((request) => this.ask(request));
   private connection: Connection = "connecting";
@@ -73,11 +81,11 @@ class Page {
       void this.learn(site);
       const levels = site.models["roman"];
       if (!levels) throw new Error("no model named roman");
-      const affordable = this.composite.drawsInSoftware ? levels.slice(-1) : levels;
-      const square = await Square.load(affordable, GROUND_SHARE);
+      const square = await Square.load(levels, GROUND_SHARE);
       for (const { id, defaultVariant } of site.monuments)
         if (defaultVariant !== null) square.showVariant(id, defaultVariant);
       this.square = square;
+      this.look.show(square, site.origin);
       this.composite.show(square);
       this.model = "shown";
       if (site.occluders !== null)
@@ -91,6 +99,7 @@ class Page {
   /** Take from the site what the overlay must know of it: its plan, and where its edges are. */
   private async learn(site: Site): Promise<void> {
     const outlines = site.monuments.map(({ footprint }) => footprint).filter((footprint) => footprint.length > 2);
+    this.align.learn(site);
     this.guide.map = new SiteMap(element("plan", HTMLElement), outlines);
     this.overlays.eyeHeight_m = site.eye_height_m;
     try {
@@ -135,7 +144,8 @@ class Page {
       this.session = message.session;
       this.bar.show(message.session);
       this.care.show(message.session);
-    } else if (message?.type === "reply" && !message.reply.ok) {
+      this.sharing.show(message.session, message.role);
+    } else if (message?.type === "reply" && !this.align.replied(message.reply) && !message.reply.ok) {
       this.hud.announce(message.reply.error ?? "That did not work.");
     }
   }
@@ -176,7 +186,12 @@ class Page {
 
   private turn(now_ms: number): void {
     const next = this.waiting;
-    if (next) {
+    if (next && this.align.holds) {
+      this.waiting = null;
+      this.acknowledge(next.message.frameId);
+      next.bitmap.close();
+      this.lastPicture_ms = now_ms;
+    } else if (next) {
       this.waiting = null;
       this.draw(next.message, next.bitmap, next.arrived_ms, now_ms);
     }
@@ -201,8 +216,10 @@ class Page {
     this.frame = message;
     const { pose, locked } = this;
     this.overlay = this.overlays.take(message, locked);
-    this.composite.laying = this.overlay.laying;
+    this.composite.laying = this.align.active ? seenThrough(this.overlay.laying) : this.overlay.laying;
     this.guide.show(message, this.overlay);
+    this.look.before(message, bitmap, now_ms);
+    const began_ms = performance.now();
     this.composite.draw({
       bitmap,
       lens: message.lens,
@@ -210,6 +227,7 @@ class Page {
       T_site_cam: this.overlay.T_site_cam,
       doubt: this.overlay.doubt,
     });
+    this.look.after(began_ms, arrived_ms);
     this.shown?.close();
     this.shown = bitmap;
     document.body.classList.remove("empty");
@@ -220,6 +238,7 @@ class Page {
     this.hud.rate.count(now_ms);
     this.hud.age.drawn(message.t_sent_ns, arrived_ms);
     this.bar.at(message.position_s);
+    this.align.drawn(message);
     this.acknowledge(message.frameId);
     this.firstFrame();
   }
@@ -233,10 +252,42 @@ class Page {
     return this.pose?.frameId === this.frame?.frameId ? this.pose : null;
   }
 
-  private ask(request: Request): void {
+  /** Ask the rig for something; return the request's name, or null where there is no connection. */
+  private ask(request: Request | { action: "align"; value: Alignment } | ShareRequest): string | null {
     this.requests += 1;
-    if (!this.link?.send({ type: "control", request_id: `v${this.requests}`, ...request }))
-      this.hud.announce("There is no connection just now.");
+    const name = `v${this.requests}`;
+    if (this.link?.send({ type: "control", request_id: name, ...request })) return name;
+    this.hud.announce("There is no connection just now.");
+    return null;
+  }
+
+  /** What an alignment may ask of the page. */
+  private host(): Host {
+    const page = this;
+    return {
+      get frame() {
+        return page.frame;
+      },
+      get doubt() {
+        return page.overlay.doubt;
+      },
+      align: (value) => this.ask({ action: "align", value }),
+      preview: (T_site_cam) => {
+        this.composite.laying = T_site_cam === null ? this.overlay.laying : GHOST;
+        this.composite.preview(T_site_cam);
+      },
+      modelPoint: (sight) => this.modelPoint(sight),
+      announce: (text) => this.hud.announce(text),
+    };
+  }
+
+  /** Return the point of the drawn model in that direction from the present eye, site axes. */
+  private modelPoint(sight: Vector3): Vector3 | null {
+    if (!this.locked || !this.square) return null;
+    const eye = transform(T_gltf_site, transform(this.locked.T_site_cam, [0, 0, 0]));
+    const way = transform(T_gltf_site, sight);
+    const hit = this.square.hit(new Raycaster(new Vector(...eye), new Vector(...way)));
+    return hit && [hit.x, -hit.z, hit.y];
   }
 
   private controls(): void {
@@ -283,6 +334,10 @@ function publish(page: Page): void {
       drawCalls: page.composite.cost.calls,
       triangles: page.composite.cost.triangles,
       occluders: page.square?.hasOccluders ?? false,
+      effort: page.look.effort.name,
+      drawMs: page.look.usual_ms,
+      sun: page.look.sun,
+      gain: page.composite.gain,
     }),
     project: (point: Vector3) => {
       const { frame, locked } = page;
@@ -293,6 +348,7 @@ function publish(page: Page): void {
       return pose && { t_ns: pose.t_ns, frameId: pose.frameId, T_site_cam: pose.T_site_cam, cov: pose.covariance };
     },
     session: () => page.session,
+    time: (count: number) => page.look.time(count),
     setPast: (share: number) => page.setPast(share),
     debugTargets: (points: Vector3[], colours: string[], hideable = false) => {
       page.composite.mark(

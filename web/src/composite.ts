@@ -29,6 +29,8 @@ import { type Lens, sameLens } from "./lens";
 import { buildLookup, type Lookup } from "./lookup";
 import type { Square } from "./model";
 import type { Laying } from "./overlay";
+import { reachOf } from "./picture";
+import type { Effort } from "./quality";
 import type { Doubted } from "./soften";
 
 const VERTEX = /* glsl */ `
@@ -47,10 +49,11 @@ const VERTEX = /* glsl */ `
 const FRAGMENT = /* glsl */ `
   uniform sampler2D picture; uniform sampler2D drawing; uniform float past; uniform bool hasModel;
   uniform float share; uniform float outline; uniform vec2 texel;
-  uniform sampler2D edges; uniform bool isSoft;
+  uniform sampler2D edges; uniform bool isSoft; uniform vec3 gain;
   uniform vec4 window; uniform vec3 upCam; uniform float eyeHeight; uniform float clearTo;
   varying vec2 vPlace; varying vec2 vDrawn; varying float vKnown;
   vec3 toSrgb(vec3 c) {
+    c *= gain;
     c = clamp(c / (1.0 + 0.12 * c), 0.0, 1.0);
     return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, vec3(lessThan(c, vec3(0.0031308))));
   }
@@ -101,6 +104,8 @@ export class Composite {
   readonly renderer: WebGLRenderer;
   /** How much of the past is shown, 0 to 1. */
   past = 0.85;
+  /** What the model's linear colours are multiplied by, to be as bright as the picture. */
+  gain: readonly [number, number, number] = [1, 1, 1];
   /** How the model is laid over the next picture. */
   laying: Laying = SOLID;
   private readonly flat = new OrthographicCamera();
@@ -112,6 +117,8 @@ export class Composite {
   private lens: Lens | null = null;
   private lookup: Lookup | null = null;
   private shot: Shot | null = null;
+  private softens = true;
+  private readonly onePixel = new Uint8Array(4);
 
   constructor(canvas: HTMLCanvasElement) {
     this.renderer = new WebGLRenderer({ canvas, antialias: false, alpha: false, powerPreference: "high-performance" });
@@ -129,6 +136,7 @@ export class Composite {
       drawing: { value: this.drawing.target.texture },
       edges: { value: this.drawing.soft.texture },
       isSoft: { value: false },
+      gain: { value: new Vector3(1, 1, 1) },
       pictureSize: { value: new Vector2(1, 1) },
       reach: { value: new Vector2(1, 1) },
       quarterTurns: { value: 0 },
@@ -196,12 +204,13 @@ export class Composite {
     if (hasModel && this.square && shot.T_site_cam) this.drawModel(this.square, shot, shot.T_site_cam);
     const { uniforms } = this.mesh.material;
     uniforms["hasModel"] = { value: hasModel };
-    uniforms["isSoft"] = { value: this.drawing.isSoft };
+    uniforms["isSoft"] = { value: hasModel && this.drawing.isSoft };
+    uniforms["gain"] = { value: new Vector3(...this.gain) };
     uniforms["past"] = { value: this.past };
     uniforms["quarterTurns"] = { value: shot.quarterTurns };
     if (shot.T_site_cam) this.lay(shot.T_site_cam);
     const size = this.renderer.getDrawingBufferSize(new Vector2());
-    const [reachX, reachY] = reachOf(shot, size.x / size.y);
+    const [reachX, reachY] = reachOf({ ...shot.lens, quarterTurns: shot.quarterTurns }, size.x / size.y);
     uniforms["reach"] = { value: new Vector2(reachX, reachY) };
     this.renderer.setRenderTarget(null);
     this.renderer.render(this.sheet, this.flat);
@@ -220,6 +229,27 @@ export class Composite {
     uniforms["upCam"] = { value: new Vector3(x, y, z) };
     uniforms["eyeHeight"] = { value: eye_m };
     uniforms["clearTo"] = { value: clear_m };
+  }
+
+  /** Draw with this much effort from now on. */
+  work({ fineness, samples, soft }: Effort): void {
+    this.drawing.fineness = fineness;
+    this.drawing.samples = samples;
+    this.softens = soft;
+  }
+
+  /** Wait until the last pixel is drawn. */
+  finish(): void {
+    const gl = this.renderer.getContext();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, this.onePixel);
+  }
+
+  /** Draw the present picture with another pose, until the next one: null for its own. */
+  preview(T_site_cam: Matrix4 | null): void {
+    const { shot } = this;
+    if (!shot) return;
+    this.draw(T_site_cam === null ? shot : { ...shot, T_site_cam });
+    this.shot = shot;
   }
 
   /** Draw again, after something other than the picture has changed. */
@@ -259,7 +289,14 @@ export class Composite {
   }
 
   private drawModel(square: Square, { lens, doubt }: Shot, T_site_cam: Matrix4): void {
-    if (this.lookup) this.drawing.render(square, { lens, window: this.lookup.window, T_site_cam, doubt, aside_m: 0 });
+    if (this.lookup)
+      this.drawing.render(square, {
+        lens,
+        window: this.lookup.window,
+        T_site_cam,
+        doubt: this.softens ? doubt : null,
+        aside_m: 0,
+      });
   }
 
   private useLens(lens: Lens): void {
@@ -270,13 +307,6 @@ export class Composite {
     this.mesh.geometry = sheetGeometry(this.lookup);
     this.mesh.material.uniforms["pictureSize"] = { value: new Vector2(lens.width_px, lens.height_px) };
   }
-}
-
-/** Return how far the picture reaches in the canvas, -1 to 1, so that all of it is seen and none of it is stretched. */
-function reachOf(shot: Shot, canvasAspect: number): readonly [number, number] {
-  const { width_px, height_px } = shot.lens;
-  const aspect = shot.quarterTurns % 2 === 0 ? width_px / height_px : height_px / width_px;
-  return aspect > canvasAspect ? [1, canvasAspect / aspect] : [aspect / canvasAspect, 1];
 }
 
 function sheetGeometry({ columns, rows, places_px, uv, known }: Lookup): BufferGeometry {

@@ -44,7 +44,7 @@ export class Drawing {
   isSoft = false;
   /** Pixels of the drawing for one of the screen, along each side. */
   fineness = 1;
-  /** What the last one cost. */
+  /** What the last one cost, shadows left out. */
   cost = { calls: 0, triangles: 0 };
   private readonly depth = new DepthTexture(1, 1);
   private readonly camera = new PerspectiveCamera();
@@ -72,6 +72,7 @@ export class Drawing {
     if (square.update(this.eye.setFromMatrixPosition(camera.matrixWorld))) renderer.shadowMap.needsUpdate = true;
     if (this.points)
       this.points.material.size = TARGET_PX * (target.width / ((window.right - window.left) * lens.fx_px));
+    const shadowsToo = renderer.shadowMap.needsUpdate;
     renderer.info.reset();
     renderer.setRenderTarget(target);
     renderer.setClearColor(0x000000, 0);
@@ -79,7 +80,7 @@ export class Drawing {
     renderer.render(square.scene, camera);
     renderer.setClearColor(BACKGROUND, 1);
     const { calls, triangles } = renderer.info.render;
-    this.cost = { calls, triangles };
+    if (!shadowsToo || this.cost.calls === 0) this.cost = { calls, triangles };
     const focal_px = target.width / (window.right - window.left);
     this.isSoft =
       sight.doubt !== null && this.soft.take(renderer, target, this.depth, focal_px, sight.doubt, [NEAR_M, FAR_M]);

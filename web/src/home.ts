@@ -78,7 +78,7 @@ class Home {
       if (defaultVariant !== null) square.showVariant(id, defaultVariant);
     square.showEvidence(this.evidence);
     this.stage.show(square);
-    void square.whole.then(() => {
+    void square.refine().then(() => {
       this.whole = this.square === square;
     });
   }

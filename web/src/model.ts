@@ -1,12 +1,9 @@
 /** The built square: its first paint, then finer levels as they arrive, lit by the sun. three.js only. */
 
 import {
-  AmbientLight,
   Box3,
   Color,
-  DirectionalLight,
   type Group as Group3D,
-  HemisphereLight,
   InstancedMesh,
   Mesh,
   type Object3D,
@@ -19,15 +16,17 @@ import { type GLTF, GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { type Batches, batched } from "./batches";
 import { EVIDENCE_COLOURS } from "./evidence";
 import { bestOf, levelAt } from "./levels";
-import { TO_SUN } from "./sky";
+import type { Effort } from "./quality";
+import type { Sun } from "./sun";
+import { Sunlight } from "./sunlight";
 import { Surfaces } from "./surfaces";
 import type { Thing } from "./thing";
 
-const SHADOW_MAP_PX = 2048;
-/** Half the side of the square that the sun's shadows cover, metres. */
-const SHADOW_REACH_M = 130;
 /** What is no monument, like the ground and what grows there, while the rest is tinted. */
 const UNTOLD = new Color(0.62, 0.62, 0.6);
+
+/** Where nobody chooses. */
+const ALL = { plain: false, shadows: true, occluders: true, coarse: false };
 
 /** All that changes its level together: a monument, or a piece of ground. */
 interface Group {
@@ -44,36 +43,46 @@ export class Square {
   readonly bounds = new Box3();
   /** Called when something has come in or changed, so that it be drawn, its shadows too. */
   changed: () => void = () => undefined;
-  /** Resolves when every level and the full textures are in, or have failed. */
-  readonly whole: Promise<void>;
   private readonly surfaces: Surfaces;
+  private readonly light = new Sunlight();
   private readonly files: Batches[] = [];
   private readonly groups = new Map<string, Group>();
   private reach_m: readonly number[] = [];
   private eye = new Vector3();
   private evidence = false;
   private occluders: Group3D | null = null;
+  private readonly hideBackdrop: boolean;
+  private readonly materials: string | null;
+  private refining: Promise<void> | null = null;
+  private effort: Pick<Effort, "plain" | "shadows" | "occluders" | "coarse"> = ALL;
 
   /** `levels` are the model's files, the finest first; the last one is in `first`. */
-  private constructor(levels: readonly string[], first: GLTF, groundShare: number) {
+  private constructor(
+    private readonly levels: readonly string[],
+    first: GLTF,
+    groundShare: number,
+  ) {
     this.surfaces = new Surfaces(groundShare);
     this.hideBackdrop = groundShare < 1;
     const extras = (first.asset["extras"] ?? {}) as Readonly<Record<string, unknown>>;
     if (Array.isArray(extras["level_reach_m"])) this.reach_m = extras["level_reach_m"] as number[];
     this.add(first, levels.length - 1);
-    this.scene.add(...lights());
+    this.scene.add(...this.light.objects);
     this.update(this.eye);
-    const materials = typeof extras["materials"] === "string" && levels.length > 1 ? extras["materials"] : null;
-    this.whole = this.refine(levels, materials);
+    this.materials = typeof extras["materials"] === "string" && levels.length > 1 ? extras["materials"] : null;
   }
 
-  private readonly hideBackdrop: boolean;
-
-  /** Load a model's coarsest level; the finer ones follow by themselves. */
+  /** Load a model's coarsest level. */
   static async load(levels: readonly string[], groundShare: number): Promise<Square> {
     const first = levels.at(-1);
     if (first === undefined) throw new Error("a model without files");
     return new Square(levels, await loader.loadAsync(first), groundShare);
+  }
+
+  /** Load the finer levels and the full textures; resolves when all are in, or have failed. */
+  refine(): Promise<void> {
+    this.refining ??= this.loadFiner();
+    return this.refining;
   }
 
   /** Choose every thing's level for an eye at this place, gltf axes; return whether anything has changed. */
@@ -81,7 +90,8 @@ export class Square {
     this.eye.copy(eye);
     let changed = false;
     for (const group of this.groups.values()) {
-      const wanted = levelAt(group.box.distanceToPoint(eye), this.reach_m, group.level);
+      const coarsest = this.levels.length - 1;
+      const wanted = this.effort.coarse ? coarsest : levelAt(group.box.distanceToPoint(eye), this.reach_m, group.level);
       const level = bestOf(wanted, [...group.levels.keys()]);
       if (level === group.level) continue;
       group.level = level;
@@ -119,9 +129,28 @@ export class Square {
     return this.occluders?.visible ?? false;
   }
 
+  /** Light it by a sun at this place of the sky. */
+  shine(sun: Sun): void {
+    this.light.shine(sun);
+    this.surfaces.shade = this.light.shade;
+    this.changed();
+  }
+
+  /** Choose what of it is drawn, and how. */
+  work(effort: Effort): void {
+    this.effort = effort;
+    this.light.shadows = effort.shadows;
+    if (this.occluders) this.occluders.visible = effort.occluders;
+    for (const { objects } of this.files) this.clothe(objects);
+    this.update(this.eye);
+    this.changed();
+    if (!effort.coarse) void this.refine();
+  }
+
   /** Draw what stands today into the depth alone: the model is not seen behind it. */
   hideBehind(occluders: Group3D): void {
     this.occluders = occluders;
+    occluders.visible = this.effort.occluders;
     this.scene.add(occluders);
     this.changed();
   }
@@ -135,6 +164,11 @@ export class Square {
       if (thing) return thing;
     }
     return null;
+  }
+
+  /** Return where a ray first meets what is drawn, gltf axes; null where it does not. */
+  hit(caster: Raycaster): Vector3 | null {
+    return caster.intersectObjects(this.solid, false)[0]?.point ?? null;
   }
 
   /** Return the height of the drawn ground at a place, gltf axes; null where there is none. */
@@ -153,12 +187,14 @@ export class Square {
   dispose(): void {
     for (const object of this.scene.children) {
       if (object instanceof Mesh) object.geometry.dispose();
-      if (object instanceof InstancedMesh || object instanceof DirectionalLight) object.dispose();
+      if (object instanceof InstancedMesh) object.dispose();
     }
+    this.light.dispose();
     this.surfaces.dispose();
   }
 
-  private async refine(levels: readonly string[], materials: string | null): Promise<void> {
+  private async loadFiner(): Promise<void> {
+    const { levels, materials } = this;
     const finer = levels.map((url, level): [number, string] => [level, url]).slice(0, -1);
     try {
       if (materials !== null) {
@@ -194,7 +230,13 @@ export class Square {
       if (this.evidence) this.tint(thing);
     }
     this.files.push(file);
+    this.clothe(file.objects);
     this.scene.add(...file.objects);
+  }
+
+  private clothe(objects: readonly Object3D[]): void {
+    for (const object of objects)
+      if (object instanceof Mesh) object.material = this.surfaces.worn(object.material, this.effort.plain);
   }
 
   private tint(thing: Thing): void {
@@ -207,27 +249,4 @@ export class Square {
 function showGroup({ levels, level, variant }: Group): void {
   for (const [of, things] of levels)
     for (const thing of things) thing.show(of === level && (thing.variant === null || thing.variant === variant));
-}
-
-function lights(): Object3D[] {
-  const sun = new DirectionalLight(0xfff1dc, 2.6);
-  sun.position
-    .copy(TO_SUN)
-    .multiplyScalar(200)
-    .add(new Vector3(-25, 0, 10));
-  sun.target.position.set(-25, 0, 10);
-  sun.target.updateMatrixWorld();
-  sun.castShadow = true;
-  sun.shadow.mapSize.set(SHADOW_MAP_PX, SHADOW_MAP_PX);
-  sun.shadow.bias = -0.0006;
-  sun.shadow.normalBias = 0.08;
-  const { camera } = sun.shadow;
-  [camera.left, camera.right, camera.bottom, camera.top] = [-1, 1, -1, 1].map((side) => side * SHADOW_REACH_M) as [
-    number,
-    number,
-    number,
-    number,
-  ];
-  [camera.near, camera.far] = [20, 420];
-  return [sun, new HemisphereLight(0xcfe3ff, 0xb59a78, 1.15), new AmbientLight(0xffffff, 0.12)];
 }

@@ -88,7 +88,7 @@ export function daylight(elevation_rad: number): Daylight {
   return {
     sunColour: direct.map((value, i) => (value / most) * (WHITE_SUN[i] ?? 1)) as unknown as Vector3,
     sunStrength: USUAL_STRENGTH * most * up,
-    skyColour: [0.81 + 0.12 * warm, 0.89 - 0.04 * warm, 1 - 0.22 * warm],
+    skyColour: [0.62 + 0.3 * warm, 0.77 - 0.02 * warm, 1 - 0.3 * warm],
     skyStrength: 0.06 + dusk * (0.4 + 0.78 * high ** 0.5),
   };
 }

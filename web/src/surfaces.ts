@@ -1,22 +1,37 @@
 /** The materials of a square, one for each name however many files it comes in; small textures at first, full ones later. */
 
-import { type Material, MeshStandardMaterial, NoBlending } from "three";
+import { type Material, MeshStandardMaterial, NoBlending, type ShaderMaterial } from "three";
 import type { GLTF } from "three/addons/loaders/GLTFLoader.js";
+import { type Common, plainOf, relook } from "./plain";
 
 const ANISOTROPY = 4;
 const PICTURES = ["map", "normalMap", "roughnessMap", "metalnessMap"] as const;
 
 export class Surfaces {
   private readonly made = new Map<string, MeshStandardMaterial>();
-  /** 1: colours give way to greys, which take the tint of their evidence. */
-  private readonly grey = { value: 0 };
+  private readonly common: Common = { grey: { value: 0 }, shade: { value: 0.55 } };
+  /** Full surfaces and their plain likenesses, both ways. */
+  private readonly plain = new Map<MeshStandardMaterial, ShaderMaterial>();
+  private readonly fullOf = new Map<Material, MeshStandardMaterial>();
   private full = new Map<string, MeshStandardMaterial>();
 
   /** `groundShare` is how much of the ground is drawn: 1 hides the real one. */
   constructor(private readonly groundShare: number) {}
 
   set tinted(on: boolean) {
-    this.grey.value = on ? 1 : 0;
+    this.common.grey.value = on ? 1 : 0;
+  }
+
+  /** How much darker the real ground is where the model's shadow falls, 0 to 1. */
+  set shade(share: number) {
+    this.common.shade.value = share;
+  }
+
+  /** Return the surface to wear in place of this one: its plain likeness, or the full one. */
+  worn(now: Material | Material[], plain: boolean): Material | Material[] {
+    if (Array.isArray(now)) return now;
+    const full = this.fullOf.get(now) ?? now;
+    return plain && full instanceof MeshStandardMaterial ? (this.plain.get(full) ?? full) : full;
   }
 
   /** Return the shared material of that name; `loaded` as it came is the first of its kind. */
@@ -26,10 +41,14 @@ export class Surfaces {
     let material = this.made.get(key);
     if (!material) {
       material = loaded.clone();
-      this.patch(material, ground && this.groundShare < 1 ? this.groundShare : null);
+      const share = ground ? this.groundShare : 1;
+      this.patch(material, share);
+      const plain = plainOf(material, share, this.common);
+      this.plain.set(material, plain);
+      this.fullOf.set(plain, material);
       this.made.set(key, material);
       const full = this.full.get(loaded.name);
-      if (full) refine(material, full);
+      if (full) this.retouch(material, full);
     }
     return material;
   }
@@ -40,11 +59,18 @@ export class Surfaces {
     for (const full of materials) if (full instanceof MeshStandardMaterial) this.full.set(full.name, full);
     for (const material of this.made.values()) {
       const full = this.full.get(material.name);
-      if (full) refine(material, full);
+      if (full) this.retouch(material, full);
     }
   }
 
+  private retouch(material: MeshStandardMaterial, full: MeshStandardMaterial): void {
+    refine(material, full);
+    const plain = this.plain.get(material);
+    if (plain) relook(plain, material);
+  }
+
   dispose(): void {
+    for (const plain of this.plain.values()) plain.dispose();
     for (const material of [...this.made.values(), ...this.full.values()]) {
       for (const picture of PICTURES) material[picture]?.dispose();
       material.dispose();
@@ -53,15 +79,16 @@ export class Surfaces {
 
   /**
    * Let the shader draw greys for the tint, and write a share of the colour, with that share as coverage, where a material
-   * is thinned: what lies in front of the ground is not seen through.
+   * is thinned: what lies in front of the ground is not seen through. Where the model's shadow falls on thinned ground,
+   * darkness covers the real one.
    */
-  private patch(material: MeshStandardMaterial, share: number | null): void {
-    if (share !== null) material.blending = NoBlending;
-    const thinned = share === null ? "" : `gl_FragColor *= ${share.toFixed(3)};`;
+  private patch(material: MeshStandardMaterial, share: number): void {
+    if (share < 1) material.blending = NoBlending;
+    const thinned = share < 1 ? THINNED.replaceAll("SHARE", share.toFixed(3)) : "";
     material.onBeforeCompile = (shader) => {
-      shader.uniforms["grey"] = this.grey;
+      Object.assign(shader.uniforms, this.common);
       shader.fragmentShader = shader.fragmentShader
-        .replace("#include <common>", "#include <common>\nuniform float grey;")
+        .replace("#include <common>", "#include <common>\nuniform float grey; uniform float shade;")
         .replace(
           "#include <map_fragment>",
           "#include <map_fragment>\n" +
@@ -77,6 +104,14 @@ export class Surfaces {
     material.customProgramCacheKey = () => thinned;
   }
 }
+
+/** After the loop over the lights, the last direct light is the sun's, its shadow taken off. */
+const THINNED = /* glsl */ `
+  float seen = 1.0;
+  #if NUM_DIR_LIGHTS > 0
+    seen = clamp(directLight.color.r / max(directionalLights[0].color.r, 1e-4), 0.0, 1.0);
+  #endif
+  gl_FragColor = vec4(gl_FragColor.rgb * SHARE, SHARE + (1.0 - SHARE) * shade * (1.0 - seen));`;
 
 function refine(material: MeshStandardMaterial, full: MeshStandardMaterial): void {
   for (const picture of PICTURES) {

@@ -1,0 +1,100 @@
+/**
+ * Surfaces that are cheap to draw, for machines without a graphics card: lit at their corners, one texture, one look at the
+ * shadow map. The colours come out as those of the full surfaces do, but for their gloss and relief.
+ */
+
+import {
+  Color,
+  type MeshStandardMaterial,
+  NoBlending,
+  ShaderMaterial,
+  type Texture,
+  UniformsLib,
+  UniformsUtils,
+} from "three";
+
+const VERTEX = /* glsl */ `
+  #include <common>
+  #include <batching_pars_vertex>
+  #include <color_pars_vertex>
+  #include <lights_pars_begin>
+  #include <shadowmap_pars_vertex>
+  uniform vec3 base; uniform float grey;
+  varying vec2 vAt; varying vec3 vSky; varying vec3 vSun; varying vec3 vTint;
+  void main() {
+    #include <color_vertex>
+    #include <batching_vertex>
+    #include <beginnormal_vertex>
+    #include <defaultnormal_vertex>
+    #include <begin_vertex>
+    #include <project_vertex>
+    #include <worldpos_vertex>
+    #include <shadowmap_vertex>
+    vec3 upright = normalize(transformedNormal);
+    vAt = uv;
+    vTint = mix(base * vColor.rgb, vColor.rgb, grey);
+    vSky = ambientLightColor;
+    #if NUM_HEMI_LIGHTS > 0
+      vSky += getHemisphereLightIrradiance(hemisphereLights[0], upright);
+    #endif
+    vSky = vSky * RECIPROCAL_PI + 0.25 * grey;
+    vSun = vec3(0.0);
+    #if NUM_DIR_LIGHTS > 0
+      vSun = directionalLights[0].color * (max(dot(upright, directionalLights[0].direction), 0.0) * RECIPROCAL_PI);
+    #endif
+  }`;
+
+const FRAGMENT = /* glsl */ `
+  #include <common>
+  #include <lights_pars_begin>
+  #include <shadowmap_pars_fragment>
+  uniform sampler2D map; uniform float grey; uniform float share; uniform float shade;
+  varying vec2 vAt; varying vec3 vSky; varying vec3 vSun; varying vec3 vTint;
+  void main() {
+    vec3 colour = texture2D(map, vAt).rgb;
+    colour = mix(colour, vec3(0.5 + 0.5 * sqrt(dot(colour, vec3(0.2126, 0.7152, 0.0722)))), grey) * vTint;
+    float seen = 1.0;
+    #if defined(USE_SHADOWMAP) && NUM_DIR_LIGHT_SHADOWS > 0
+      vec3 at = vDirectionalShadowCoord[0].xyz;
+      at.z += directionalLightShadows[0].shadowBias;
+      if (at.x > 0.0 && at.x < 1.0 && at.y > 0.0 && at.y < 1.0 && at.z < 1.0) seen = texture(directionalShadowMap[0], at);
+    #endif
+    float covers = share + (1.0 - share) * shade * (1.0 - seen);
+    gl_FragColor = vec4(colour * (vSky + vSun * seen) * share, covers);
+  }`;
+
+/** What all plain surfaces of a model share. */
+export interface Common {
+  readonly grey: { value: number };
+  readonly shade: { value: number };
+}
+
+/** Return the plain likeness of a surface; `share` is how much of it is drawn, 1 for all. */
+export function plainOf(full: MeshStandardMaterial, share: number, common: Common): ShaderMaterial {
+  const material = new ShaderMaterial({
+    vertexShader: VERTEX,
+    fragmentShader: FRAGMENT,
+    uniforms: {
+      ...UniformsUtils.clone(UniformsLib.lights),
+      map: { value: null },
+      base: { value: new Color() },
+      share: { value: share },
+    },
+    lights: true,
+    vertexColors: full.vertexColors,
+    side: full.side,
+  });
+  // three reads it, its types do not tell
+  Object.assign(material.extensions, { multiDraw: true });
+  if (share < 1) material.blending = NoBlending;
+  Object.assign(material.uniforms, common);
+  relook(material, full);
+  return material;
+}
+
+/** Take texture and colour anew from the full surface. */
+export function relook(plain: ShaderMaterial, full: MeshStandardMaterial): void {
+  const { map, base } = plain.uniforms as { map: { value: Texture | null }; base: { value: Color } };
+  map.value = full.map;
+  base.value.copy(full.color);
+}
