@@ -46,7 +46,7 @@ NO_INDEX = the package index gave no answer, or no: check the network and the se
 NO_REGISTRY = the web packages were not installed: check the network and the settings of npm (registry, proxy, certificate).
 CHECKING = checking format, lint and types
 
-.PHONY: help setup demo build test check bench bench-accuracy paper gallery fuzz lock clean FORCE
+.PHONY: help setup demo build test check bench bench-accuracy paper wire gallery fuzz lock clean FORCE
 
 help: ## list the commands
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 21
@@ -82,6 +82,9 @@ bench-accuracy: setup $(BIN)/.dev ## measure accuracy over seeds, on logs and be
 
 paper: setup $(BIN)/.dev ## measure all of the paper and write docs/paper.md anew; ARGS="--only document" for the writing alone
 	@$(BIN)/python -m server.paper $(ARGS)
+
+wire: $(BIN)/.demo ## write the page's types of the messages anew, from server/messages.py
+	@$(BIN)/python -m server.typescript
 
 gallery: setup $(BIN)/.dev ## draw docs/gallery.md and the golden pictures of the tests anew, in a browser
 	@$(BIN)/python -m tests.web.gallery

@@ -9,6 +9,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import Final
 
+from server.grants import ABILITIES, Role
 from server.traffic import Tally
 from server.wire import keep_seek
 
@@ -32,10 +33,15 @@ class Mailbox:
         self.sent: Callable[[bool, int], None] = lambda is_frame, t_ns: None
         """Called when a frame, or a pose, has gone, with when it had arrived."""
         self._under_way: tuple[bool, int | None] = (False, None)
-        self.sees = True
-        """Whether it is for somebody who may see pictures that the walker does not share."""
+        self.role: Role = "local"
+        """Of whom it is for."""
         self.closing: tuple[int, str] | None = None
         """Code and reason with which the connection is to be closed, once there is one."""
+
+    @property
+    def sees(self) -> bool:
+        """Whether it is for somebody who may see pictures that the walker does not share."""
+        return "see" in ABILITIES[self.role]
 
     def put_text(self, text: str) -> None:
         """Queue a text message; too many of them close the mailbox."""

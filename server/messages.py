@@ -10,6 +10,7 @@ import msgspec
 from msgspec import UNSET, Meta, Struct, UnsetType
 
 from server.errors import MalformedMessage
+from server.grants import Role
 from server.wire import VERSION
 
 MAX_VIEWER_TEXT: Final = 4 * 1024
@@ -83,6 +84,17 @@ class Playback(Struct, frozen=True):
     looping: bool
 
 
+class SensorHealth(Struct, frozen=True):
+    """How one sensor of a live rig is."""
+
+    trouble: bool
+    """Whether somebody should do something."""
+    sentence: Sentence
+    """What is the matter and what to do; or that all is well."""
+    state: Name = ""
+    rate_hz: Annotated[float, Meta(ge=0.0, le=1e6)] = 0.0
+
+
 class SessionFields(Struct, frozen=True, kw_only=True):
     """What a rig tells of its session; a field that is left out stays as it was."""
 
@@ -95,7 +107,7 @@ class SessionFields(Struct, frozen=True, kw_only=True):
     playback: Playback | UnsetType | None = UNSET
     anchor: Literal["site", "here"] | UnsetType = UNSET
     notice: Sentence | UnsetType | None = UNSET
-    health: dict[Name, Any] | UnsetType = UNSET
+    health: dict[Name, SensorHealth] | UnsetType = UNSET
     sharing: bool | UnsetType = UNSET
     """Whether everybody who watches sees the camera picture; else the walker's own view alone."""
 
@@ -115,6 +127,49 @@ class StateUpdate(SessionFields, frozen=True, kw_only=True, tag_field="type", ta
         """Return every field that the message gives."""
         nested = {} if self.session is UNSET else self.session.given()
         return nested | self.given()
+
+
+class Session(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A session, as viewers and `/api/sessions` get it: every field, always."""
+
+    name: Name
+    kind: Literal["live", "replay"]
+    log: Name | None
+    """The recording that is played; null for a live walk."""
+    duration_s: Seconds
+    estimator: Name
+    estimators: list[Name]
+    unavailable: dict[Name, Sentence]
+    """Estimators that this session cannot run, with the reason."""
+    playback: Playback | None
+    """Null for a live walk."""
+    anchor: Literal["site", "here"]
+    notice: Sentence | None
+    """What whoever watches should know."""
+    health: dict[Name, SensorHealth]
+    """How a live rig's sensors are, by name; empty for a replay."""
+    sharing: bool
+    """Whether everybody who watches sees the camera picture; else the walker's own view alone."""
+    connected: bool
+    """Whether the rig is there."""
+
+
+class Hello(Struct, frozen=True, forbid_unknown_fields=True, tag_field="type", tag="hello"):
+    """The first message to a viewer."""
+
+    version: int
+    """Of the wire format, on this connection."""
+    role: Role
+    """As whom this viewer is here; `rig` is the walker, who alone switches sharing."""
+    sees: bool
+    """Whether this viewer gets the camera picture though it is not shared; else an empty one stands in its place."""
+    session: Session
+
+
+class SessionNews(Struct, frozen=True, forbid_unknown_fields=True, tag_field="type", tag="state"):
+    """The session has changed: the whole of it anew."""
+
+    session: Session
 
 
 _FROM_VIEWER: msgspec.json.Decoder[Ack | ControlRequest] = msgspec.json.Decoder(Ack | ControlRequest)
@@ -142,9 +197,10 @@ def encode(message: Struct) -> str:
     return msgspec.json.encode(message).decode()
 
 
-def hello(session: dict[str, Any], *, sees: bool) -> str:
-    """Return the first message to a viewer; `sees` says whether it gets the picture though it is not shared."""
-    return msgspec.json.encode({"type": "hello", "version": VERSION, "sees": sees, "session": session}).decode()
+def hello(session: dict[str, Any], *, role: Role, sees: bool) -> str:
+    """Return the first message to a viewer, see `Hello`."""
+    message = {"type": "hello", "version": VERSION, "role": role, "sees": sees, "session": session}
+    return msgspec.json.encode(message).decode()
 
 
 def state(session: dict[str, Any]) -> str:

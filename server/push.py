@@ -16,12 +16,13 @@ from typing import Any, Final, Self
 import numpy as np
 from websockets.exceptions import ConnectionClosed, InvalidStatus, WebSocketException
 from websockets.sync.client import ClientConnection, connect
+from websockets.typing import Subprotocol
 
 from server.errors import LinkRefused, MalformedMessage
 from server.messages import ControlReply, ControlRequest, encode, parse_control
 from server.outbox import Outbox
 from server.sessions import REPLACED
-from server.wire import FrameMeta, PoseUpdate, encode_frame, encode_pose
+from server.wire import SUBPROTOCOL, FrameMeta, PoseUpdate, encode_frame, encode_pose
 from tracker.errors import InputError, MissingSensor
 from tracker.estimator import NO_MOTION_MODEL, Pose
 from tracker.geometry import transform
@@ -43,7 +44,7 @@ _UNDER_WAY: Final = 128 * 1024
 _FAREWELL_S: Final = 2.0
 _MAX_CONTROL_BYTES: Final = 16 * 1024
 #: Refusals that will not change by asking again.
-_FINAL_STATUS: Final = (401, 403, 404)
+_FINAL_STATUS: Final = (401, 403, 404, 406)
 _TRUTH: Final = "truth"
 
 
@@ -193,6 +194,7 @@ class RigLink:
         connection = connect(
             self._url,
             additional_headers={"Authorization": f"Bearer {self._token}"},
+            subprotocols=[Subprotocol(SUBPROTOCOL)],
             compression=None,  # pictures are compressed already
             proxy=None,
             open_timeout=5.0,
@@ -265,6 +267,6 @@ class RigLink:
         status = exc.response.status_code
         if status in _FINAL_STATUS:
             self.refused = LinkRefused(
-                f"The server refused {self._url} ({status}): check its token and session's name."
+                f"The server refused {self._url} ({status}): check its token, its session's name and its version."
             )
             _logger.error("%s", self.refused)

@@ -151,7 +151,7 @@ class Session:
             raise ServerFull(f"{self._max_viewers} viewers watch already: try again when one has left.")
         self.viewers.add(viewer)
         viewer.tally, viewer.sent = self.tally, self._sent
-        viewer.put_text(messages.hello(self.describe(), sees=viewer.sees))
+        viewer.put_text(messages.hello(self.describe(), role=viewer.role, sees=viewer.sees))
         self._show(viewer)
         if self._pose is not None:
             viewer.put_pose(self._pose)

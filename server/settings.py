@@ -1,15 +1,13 @@
 """Settings of the estimators by name: what `--set KEY=VALUE` chooses, and what `agora settings` lists."""
 
-import ast
-import inspect
 import json
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields, is_dataclass
-from textwrap import dedent
 from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
+from server.docstrings import field_docstrings
 from tracker.errors import InputError
 from tracker.estimators import Settings
 
@@ -86,25 +84,10 @@ def _value(text: str) -> Any:
 
 
 def _settings_of(settings: Any, prefix: str) -> Iterator[Setting]:
-    meanings = _field_docstrings(type(settings))
+    meanings = field_docstrings(type(settings))
     for field in fields(settings):
         value = getattr(settings, field.name)
         if is_dataclass(value):
             yield from _settings_of(value, f"{prefix}{field.name}.")
         else:
             yield Setting(prefix + field.name, value, meanings.get(field.name, ""))
-
-
-def _field_docstrings(kind: type) -> dict[str, str]:
-    """Return the strings that follow a class's fields in its source; Python itself keeps none of them."""
-    (tree,) = ast.parse(dedent(inspect.getsource(kind))).body
-    assert isinstance(tree, ast.ClassDef)
-    found, name = {}, ""
-    for node in tree.body:
-        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
-            name = node.target.id
-        elif name and isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
-            found[name], name = " ".join(str(node.value.value).split()), ""
-        else:
-            name = ""
-    return found

@@ -20,6 +20,7 @@ from server.grants import Grant
 from server.limits import Bucket
 from server.messages import Ack, ControlReply, encode, parse_from_viewer
 from server.sessions import Session, Sessions
+from server.wire import SUBPROTOCOL
 
 MALFORMED: Final = 1007
 #: "Policy violation", RFC 6455.
@@ -28,6 +29,7 @@ TRY_LATER: Final = 1013
 #: Close codes of our own, which a page can read where an HTTP status stays hidden from it.
 FORBIDDEN: Final = 4403
 NO_SESSION: Final = 4404
+OTHER_VERSION: Final = 4406
 
 #: Messages of one connection in the long run, and for how long it may send more than that: acknowledgements come at the rate of
 #: pictures, a rig's messages at that of pictures, poses and changes of state.
@@ -36,6 +38,7 @@ _RIG_HZ: Final = 1000.0
 _BURST_S: Final = 5.0
 _ONLY_WATCHES: Final = "Only the walker and operators control a walk; this token watches."
 _NOT_YOURS: Final = "Only the walker can share the camera's picture."
+_OTHER_VERSION: Final = f"This server speaks {SUBPROTOCOL} alone: take the same version on both sides."
 _EXPIRED: Final = "The token that let you in has expired."
 
 _Take = Callable[[str | bytes], None]
@@ -55,17 +58,23 @@ def socket_routes(sessions: Sessions, access: Access) -> APIRouter:
         if not grant.allows("publish", name):
             await _deny(websocket, 403, "This token is not a rig's of this session: see `agora token rig`.")
             return
+        if not _speaks(websocket):
+            await _deny(websocket, 406, _OTHER_VERSION)
+            return
         try:
             session = sessions.open(name)
         except (UnknownSession, ServerFull) as exc:
             await _deny(websocket, 404 if isinstance(exc, UnknownSession) else 503, str(exc))
             return
-        await websocket.accept()
+        await _accept(websocket)
         await _serve_rig(websocket, session, access.left_s(grant), sessions.now_ns)
 
     @router.websocket("/ws/view/{name}")
     async def view(websocket: WebSocket, name: str) -> None:
-        await websocket.accept()
+        await _accept(websocket)
+        if not _speaks(websocket):
+            await websocket.close(OTHER_VERSION, _OTHER_VERSION)
+            return
         try:
             grant = access.grant_of(websocket.headers)
         except TokenRefused as exc:
@@ -75,7 +84,7 @@ def socket_routes(sessions: Sessions, access: Access) -> APIRouter:
             await websocket.close(FORBIDDEN, "This token is for another session.")
             return
         mailbox = Mailbox()
-        mailbox.sees = grant.allows("see", name)
+        mailbox.role = grant.role
         try:
             session = sessions.get(name)
             session.join(mailbox)
@@ -172,6 +181,16 @@ async def _write(websocket: WebSocket, mailbox: Mailbox) -> None:
                 websocket.send_text(message) if isinstance(message, str) else websocket.send_bytes(message)
             )
             await send
+
+
+def _speaks(websocket: WebSocket) -> bool:
+    """Whether the peer knows our version of the wire format; one that names none is taken at its word, message by message."""
+    offered = websocket.scope["subprotocols"]
+    return not offered or SUBPROTOCOL in offered
+
+
+async def _accept(websocket: WebSocket) -> None:
+    await websocket.accept(SUBPROTOCOL if SUBPROTOCOL in websocket.scope["subprotocols"] else None)
 
 
 async def _deny(websocket: WebSocket, status: int, sentence: str) -> None:

@@ -17,6 +17,8 @@ from tracker.measurements import Matrix, Vector3, Wxyz
 from tracker.rig import CameraModel, DistortionModel
 
 VERSION: Final = 1
+#: What both sides name in the WebSocket's handshake (Sec-WebSocket-Protocol) to agree on the version.
+SUBPROTOCOL: Final = f"agora.v{VERSION}"
 FRAME_HEADER_BYTES: Final = 384
 POSE_BYTES: Final = 112
 MAX_FRAME_BYTES: Final = 4 * 1024 * 1024

@@ -367,3 +367,17 @@ def test_no_secret_comes_into_the_journal(walk: Undisturbed, caplog: pytest.LogC
     mine = [record.getMessage() for record in caplog.records if not record.name.startswith(("httpx", "httpcore"))]
     theirs = [line for line in mine if not line.startswith(("> ", "< ", "= "))]  # the test's own client, not the server
     assert not [line for line in theirs if secret[:-1] in line]
+
+
+def test_both_sides_agree_on_the_version(walk: Undisturbed) -> None:
+    shown = bearer(token("viewer"))
+    with viewer(walk.server, additional_headers=shown, subprotocols=["agora.v9", "agora.v1"]) as watching:
+        assert watching.subprotocol == "agora.v1"
+        assert text_of(watching, "hello")["version"] == 1
+    with viewer(walk.server, additional_headers=shown, subprotocols=["agora.v9"]) as other:
+        with pytest.raises(ConnectionClosed):
+            other.recv(HELD_S)
+        assert (other.close_code, "agora.v1" in (other.close_reason or "")) == (4406, True)
+    newer = bearer(token("rig", "walk"))
+    with pytest.raises(InvalidStatus, match="406"):
+        connect(walk.server.rig_url("walk"), additional_headers=newer, subprotocols=["agora.v9"], proxy=None)  # type: ignore[list-item]

@@ -17,6 +17,7 @@ const SESSION = {
   anchor: "here",
   notice: null,
   health: {},
+  sharing: false,
   connected: true,
 };
 
@@ -47,17 +48,20 @@ function jsonOf(random: Random, depth: number): unknown {
 }
 
 test("a session is read as the server wrote it", () => {
-  const { connected: _connected, ...told } = SESSION;
-  expect(parseSession(SESSION)).toEqual(told);
+  expect(parseSession(SESSION)).toEqual(SESSION);
   expect(parseSessions({ sessions: [SESSION, { ...SESSION, name: "b" }] }).map(({ name }) => name)).toEqual([
     "walk",
     "b",
   ]);
 });
 
-test.each(["hello", "state"])("%s carries the session", (type) => {
-  const message = parseState(JSON.stringify({ type, version: 1, session: SESSION }));
-  expect(message).toEqual({ type: "session", session: parseSession(SESSION) });
+test.each([
+  ["hello", "rig", "rig"],
+  ["hello", "emperor", "viewer"],
+  ["state", undefined, null],
+])("%s carries the session, and %s is %s", (type, told, role) => {
+  const message = parseState(JSON.stringify({ type, version: 1, role: told, sees: true, session: SESSION }));
+  expect(message).toEqual({ type: "session", session: parseSession(SESSION), role });
 });
 
 test("a reply tells what became of a request", () => {
@@ -74,7 +78,7 @@ test("a reply tells what became of a request", () => {
 test("of a rig's health the sentence is read, and what has none is left out", () => {
   const gps = { state: "lost", trouble: true, sentence: "The GPS receiver is gone.", rate_hz: 0 };
   expect(parseSession({ ...SESSION, health: { gps, imu: { trouble: true }, camera: null } }).health).toEqual({
-    gps: { trouble: true, sentence: "The GPS receiver is gone." },
+    gps,
   });
   expect(parseSession({ ...SESSION, health: [gps] }).health).toEqual({});
 });

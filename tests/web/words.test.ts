@@ -37,7 +37,8 @@ test("when all is well nothing is said, and a notice of the server's is passed o
 
 /** From the most pressing to the least: each must be said even where all below it are true as well. */
 const TROUBLES: readonly (readonly [Partial<Situation>, RegExp])[] = [
-  [{ connection: "refused" }, /may not see/],
+  [{ connection: "refused" }, /may not watch/],
+  [{ connection: "other version" }, /load it anew/],
   [{ connection: "no session" }, /^Nobody is walking/],
   [{ connection: "lost" }, /connection is lost/],
   [{ connection: "connecting" }, /^Connecting/],

@@ -2,38 +2,11 @@
  * The text messages and HTTP answers: JSON to values, or one `ProtocolError`. No socket and no DOM in here.
  */
 
-export type SessionKind = "live" | "replay";
+import type { Hello, Playback, SensorHealth, Session } from "./messages.gen";
 
-export interface Playback {
-  readonly playing: boolean;
-  readonly position_s: number;
-  readonly speed: number;
-  readonly looping: boolean;
-}
+export type { Playback, SensorHealth, Session };
 
-export interface Session {
-  readonly name: string;
-  readonly kind: SessionKind;
-  readonly log: string | null;
-  readonly duration_s: number;
-  readonly estimator: string;
-  readonly estimators: readonly string[];
-  /** Estimators that this session cannot run, with the reason. */
-  readonly unavailable: Readonly<Record<string, string>>;
-  /** Null for a live walk. */
-  readonly playback: Playback | null;
-  readonly anchor: "site" | "here";
-  readonly notice: string | null;
-  /** How a live rig's sensors are, by name; empty for a replay. */
-  readonly health: Readonly<Record<string, SensorHealth>>;
-}
-
-export interface SensorHealth {
-  /** Whether somebody should do something. */
-  readonly trouble: boolean;
-  /** What is the matter and what to do; or that all is well. */
-  readonly sentence: string;
-}
+export type SessionKind = Session["kind"];
 
 export interface Reply {
   readonly requestId: string;
@@ -42,8 +15,9 @@ export interface Reply {
   readonly didSeek: boolean;
 }
 
+/** `role` comes with the first message alone: as whom this page is here. */
 export type StateMessage =
-  | { readonly type: "session"; readonly session: Session }
+  | { readonly type: "session"; readonly session: Session; readonly role: Hello["role"] | null }
   | { readonly type: "reply"; readonly reply: Reply };
 
 /** Text that is not what it claims to be. */
@@ -62,8 +36,9 @@ export function parseState(text: string): StateMessage | null {
   const message = fields(parseJson(text), "message");
   switch (message["type"]) {
     case "hello":
+      return { type: "session", session: parseSession(message["session"]), role: parseRole(message["role"]) };
     case "state":
-      return { type: "session", session: parseSession(message["session"]) };
+      return { type: "session", session: parseSession(message["session"]), role: null };
     case "reply":
       return {
         type: "reply",
@@ -97,7 +72,16 @@ export function parseSession(value: unknown): Session {
     anchor: session["anchor"] === "here" ? "here" : "site",
     notice: typeof session["notice"] === "string" && session["notice"] !== "" ? session["notice"] : null,
     health: parseHealth(session["health"]),
+    sharing: session["sharing"] === true,
+    connected: session["connected"] !== false,
   };
+}
+
+const ROLES: readonly Hello["role"][] = ["admin", "local", "operator", "rig", "viewer"];
+
+/** Read a role; one that this page does not know may do no more than watch. */
+function parseRole(value: unknown): Hello["role"] {
+  return ROLES.find((role) => role === value) ?? "viewer";
 }
 
 /** Read how sensors are; what is not that is left out. */
@@ -105,8 +89,9 @@ function parseHealth(value: unknown): Readonly<Record<string, SensorHealth>> {
   if (typeof value !== "object" || value === null || Array.isArray(value)) return {};
   const sensors = Object.entries(value as Fields).flatMap(([name, sensor]): [string, SensorHealth][] => {
     if (typeof sensor !== "object" || sensor === null) return [];
-    const { trouble, sentence } = sensor as Fields;
-    return typeof sentence === "string" ? [[name, { trouble: trouble === true, sentence }]] : [];
+    const { trouble, sentence, state, rate_hz } = sensor as Fields;
+    if (typeof sentence !== "string") return [];
+    return [[name, { trouble: trouble === true, sentence, state: text_(state, ""), rate_hz: number(rate_hz, 0) }]];
   });
   return Object.fromEntries(sensors);
 }

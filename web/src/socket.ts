@@ -1,5 +1,6 @@
 /** The connection to one session: it comes back by itself, and tells what became of it. */
 
+import { FORBIDDEN, type FromViewer, NO_SESSION, OTHER_VERSION, SUBPROTOCOL } from "./messages.gen";
 import type { Connection } from "./words";
 
 export interface Listener {
@@ -10,8 +11,11 @@ export interface Listener {
 
 const FIRST_WAIT_MS = 300;
 const LONGEST_WAIT_MS = 5000;
-const REFUSED = 4403;
-const NO_SESSION = 4404;
+const MEANINGS: Readonly<Record<number, Connection>> = {
+  [FORBIDDEN]: "refused",
+  [NO_SESSION]: "no session",
+  [OTHER_VERSION]: "other version",
+};
 
 export class Link {
   private socket: WebSocket | null = null;
@@ -27,7 +31,7 @@ export class Link {
   }
 
   /** Send a JSON message; false where there is no connection. */
-  send(message: object): boolean {
+  send(message: FromViewer): boolean {
     if (this.socket?.readyState !== WebSocket.OPEN) return false;
     this.socket.send(JSON.stringify(message));
     return true;
@@ -42,7 +46,7 @@ export class Link {
   }
 
   private connect(): void {
-    const socket = new WebSocket(this.url);
+    const socket = new WebSocket(this.url, SUBPROTOCOL);
     socket.binaryType = "arraybuffer";
     this.socket = socket;
     socket.onopen = () => {
@@ -55,7 +59,7 @@ export class Link {
     };
     socket.onclose = ({ code }) => {
       if (this.socket !== socket) return;
-      this.listener.connection(code === REFUSED ? "refused" : code === NO_SESSION ? "no session" : "lost");
+      this.listener.connection(MEANINGS[code] ?? "lost");
       this.timer = window.setTimeout(() => this.connect(), this.wait_ms);
       this.wait_ms = Math.min(2 * this.wait_ms, LONGEST_WAIT_MS);
     };

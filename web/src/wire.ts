@@ -7,9 +7,10 @@
 
 import { isRigid, type Matrix4, type Vector3 } from "./frames";
 import type { Lens, LensModel } from "./lens";
+import { FRAME_HEADER_BYTES, POSE_BYTES } from "./messages.gen";
 
-export const FRAME_HEADER_BYTES = 384;
-export const POSE_BYTES = 112;
+export { FRAME_HEADER_BYTES, POSE_BYTES };
+
 /** No picture of a rig comes near this; a larger message is refused unread. */
 const LARGEST_MESSAGE_BYTES = 16 * 1024 * 1024;
 const LARGEST_SIDE_PX = 8192;

@@ -4,7 +4,10 @@
 
 import type { SensorHealth } from "./protocol";
 
-export type Connection = "connecting" | "open" | "lost" | "refused" | "no session";
+/** What of a sensor's health is put into words. */
+type Told = Pick<SensorHealth, "trouble" | "sentence">;
+
+export type Connection = "connecting" | "open" | "lost" | "refused" | "no session" | "other version";
 
 export interface Situation {
   readonly connection: Connection;
@@ -21,7 +24,7 @@ export interface Situation {
   /** The server's own notice, if any. */
   readonly notice: string | null;
   /** How a live rig's sensors are, by name. */
-  readonly health: Readonly<Record<string, SensorHealth>>;
+  readonly health: Readonly<Record<string, Told>>;
   readonly model: "loading" | "shown" | "failed";
 }
 
@@ -30,7 +33,8 @@ const QUIET_AFTER_MS = 2500;
 /** Return what stands in the visitor's way, most pressing first, or null when all is well. */
 export function sentenceFor(s: Situation): string | null {
   if (s.connection === "refused")
-    return "This page may not see the pictures: open it with the link that the rig's owner gives you.";
+    return "This page may not watch this walk: open the link that its owner gives you, or show a token at /enter.";
+  if (s.connection === "other version") return "This page is of another version than the server: load it anew.";
   if (s.connection === "no session") return noSession(s.asked);
   if (s.connection === "lost") return "The connection is lost: trying again …";
   if (s.connection === "connecting") return s.sinceOpened_ms > QUIET_AFTER_MS ? "Connecting to the walk …" : null;
@@ -53,10 +57,7 @@ const SENSORS: Readonly<Record<string, string>> = {
 };
 
 /** Return what has happened to a rig's sensors between two states, or null: a trouble in its own words, or that one is back. */
-export function newsOf(
-  before: Readonly<Record<string, SensorHealth>>,
-  now: Readonly<Record<string, SensorHealth>>,
-): string | null {
+export function newsOf(before: Readonly<Record<string, Told>>, now: Readonly<Record<string, Told>>): string | null {
   for (const [name, sensor] of Object.entries(now)) {
     if (sensor.trouble && !before[name]?.trouble) return sensor.sentence;
     if (!sensor.trouble && before[name]?.trouble) return `${SENSORS[name] ?? `The ${name}`} is back.`;

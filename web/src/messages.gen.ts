@@ -1,0 +1,124 @@
+/** Written by `make wire` from server/messages.py; never edited by hand. */
+
+export const VERSION = 1;
+export const SUBPROTOCOL = "agora.v1";
+export const FRAME_HEADER_BYTES = 384;
+export const POSE_BYTES = 112;
+export const MAX_FRAME_BYTES = 4194304;
+export const FORBIDDEN = 4403;
+export const NO_SESSION = 4404;
+export const OTHER_VERSION = 4406;
+export const REPLACED = 4409;
+export const ENDED = 4410;
+export const RESTART = 1012;
+
+/** A viewer has drawn, or dropped, this frame. */
+export interface Ack {
+  readonly type: "ack";
+  readonly frame_id: number;
+}
+
+/** A visitor has pointed at a landmark in a picture. */
+export interface Tap {
+  readonly kind: "tap";
+  readonly frame_id: number;
+  /** Of the picture as stored; (0, 0) is the centre of its first pixel. */
+  readonly place_px: readonly [number, number];
+  readonly sigma_px: number;
+  readonly point_site_m: readonly [number, number, number];
+}
+
+/** A visitor has shown on the plan where the rig is. */
+export interface Here {
+  readonly kind: "here";
+  readonly e_m: number;
+  readonly n_m: number;
+  readonly sigma_m: number;
+}
+
+/** A visitor takes the last tap or place back. */
+export interface TakeBack {
+  readonly kind: "undo";
+}
+
+/** A viewer asks the rig for something. */
+export interface ControlRequest {
+  readonly type: "control";
+  readonly request_id: string;
+  readonly action: "align" | "estimator" | "pause" | "play" | "seek" | "share" | "speed";
+  /** Seconds for `seek`, a factor for `speed`, a name for `estimator`, an alignment for `align`, whether to for `share`. */
+  readonly value?: boolean | number | string | Tap | Here | TakeBack | null;
+}
+
+/** Where a replay stands. */
+export interface Playback {
+  readonly playing: boolean;
+  readonly position_s: number;
+  readonly speed: number;
+  readonly looping: boolean;
+}
+
+/** How one sensor of a live rig is. */
+export interface SensorHealth {
+  /** Whether somebody should do something. */
+  readonly trouble: boolean;
+  /** What is the matter and what to do; or that all is well. */
+  readonly sentence: string;
+  readonly state: string;
+  readonly rate_hz: number;
+}
+
+/** A session, as viewers and `/api/sessions` get it: every field, always. */
+export interface Session {
+  readonly name: string;
+  readonly kind: "live" | "replay";
+  /** The recording that is played; null for a live walk. */
+  readonly log: string | null;
+  readonly duration_s: number;
+  readonly estimator: string;
+  readonly estimators: readonly string[];
+  /** Estimators that this session cannot run, with the reason. */
+  readonly unavailable: Readonly<Record<string, string>>;
+  /** Null for a live walk. */
+  readonly playback: Playback | null;
+  readonly anchor: "here" | "site";
+  /** What whoever watches should know. */
+  readonly notice: string | null;
+  /** How a live rig's sensors are, by name; empty for a replay. */
+  readonly health: Readonly<Record<string, SensorHealth>>;
+  /** Whether everybody who watches sees the camera picture; else the walker's own view alone. */
+  readonly sharing: boolean;
+  /** Whether the rig is there. */
+  readonly connected: boolean;
+}
+
+/** The first message to a viewer. */
+export interface Hello {
+  readonly type: "hello";
+  /** Of the wire format, on this connection. */
+  readonly version: number;
+  /** As whom this viewer is here; `rig` is the walker, who alone switches sharing. */
+  readonly role: "admin" | "local" | "operator" | "rig" | "viewer";
+  /** Whether this viewer gets the camera picture though it is not shared; else an empty one stands in its place. */
+  readonly sees: boolean;
+  readonly session: Session;
+}
+
+/** The session has changed: the whole of it anew. */
+export interface SessionNews {
+  readonly type: "state";
+  readonly session: Session;
+}
+
+/** What became of a request. */
+export interface ControlReply {
+  readonly type: "reply";
+  readonly request_id: string;
+  readonly ok: boolean;
+  readonly error: string | null;
+  readonly did_seek: boolean;
+}
+
+export type FromViewer = Ack | ControlRequest;
+
+export type ToViewer = Hello | SessionNews | ControlReply;
