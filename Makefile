@@ -46,7 +46,7 @@ NO_INDEX = the package index gave no answer, or no: check the network and the se
 NO_REGISTRY = the web packages were not installed: check the network and the settings of npm (registry, proxy, certificate).
 CHECKING = checking format, lint and types
 
-.PHONY: help setup demo build test check bench bench-accuracy paper wire gallery fuzz lock clean FORCE
+.PHONY: help setup demo build test check bench bench-accuracy soak paper wire gallery fuzz lock clean FORCE
 
 help: ## list the commands
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 21
@@ -79,6 +79,9 @@ bench: setup $(BIN)/.dev ## measure speed beside the peers; writes build/bench.j
 
 bench-accuracy: setup $(BIN)/.dev ## measure accuracy over seeds, on logs and beside rivals; ARGS="--only study --seeds 101-104" for a part
 	@$(BIN)/python -m tests.benchmarks.accuracy $(ARGS)
+
+soak: setup $(BIN)/.dev ## ten minutes of a live walk and eight hours of a rig, with limits, appended to docs/soak.md; ARGS="--only live"
+	@$(BIN)/python -m tests.benchmarks.soak $(ARGS)
 
 paper: setup $(BIN)/.dev ## measure all of the paper and write docs/paper.md anew; ARGS="--only document" for the writing alone
 	@$(BIN)/python -m server.paper $(ARGS)
