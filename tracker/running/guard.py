@@ -1,6 +1,7 @@
 """What a broken sensor says is withheld from the estimator: stamps out of order, and one value again and again. Pure."""
 
 from collections import Counter
+from math import hypot
 
 from tracker.measurements import GpsFix, GpsVelocity, ImuSample, Measurement, Vector3
 from tracker.soundness import Soundness
@@ -9,8 +10,10 @@ from tracker.soundness import Soundness
 _SAMES, _SAME_NS = 10, 100_000_000
 #: A receiver may repeat a position while the rig stands. While it walks faster than this,
 _WALKS_M_S = 0.5
-#: no position stays the same for so long.
+#: no position stays the same for so long. And none stays
 _STAYS_NS = 2_500_000_000
+#: while the receiver's own velocity has carried it so far.
+_CARRIED_M = 0.7
 
 
 class Guard:
@@ -50,6 +53,9 @@ class Guard:
                 self.gps_stuck = stays > 0 and (self.gps_stuck or (stays >= _STAYS_NS and speed_m_s > _WALKS_M_S))
                 return "gps_repeats" if self.gps_stuck else None
             case GpsVelocity():
+                stays_s = self._gps.lasts_s(measurement.t_ns)
+                if stays_s * hypot(*measurement.v_enu_m_s) > _CARRIED_M:
+                    self.gps_stuck = True
                 return "gps_repeats" if self.gps_stuck else None
         return None
 
@@ -60,11 +66,16 @@ class _Repeats:
     def __init__(self) -> None:
         self._numbers: tuple[float, ...] = ()
         self._count = 0
-        self._since_ns = 0
+        self._since_ns = self._newest_ns = 0
 
     def count(self, numbers: tuple[float, ...], t_ns: int) -> tuple[int, int]:
         """Take the next numbers; return how many there are of them in a row, and the stamp of the first."""
         if numbers != self._numbers:
             self._numbers, self._count, self._since_ns = numbers, 0, t_ns
         self._count += 1
+        self._newest_ns = t_ns
         return self._count, self._since_ns
+
+    def lasts_s(self, t_ns: int) -> float:
+        """Return for how long the numbers had been the same when they came last, at this stamp; 0 where they did not come then."""
+        return (t_ns - self._since_ns) * 1e-9 if self._count > 1 and t_ns == self._newest_ns else 0.0

@@ -50,6 +50,27 @@ def test_a_receiver_may_repeat_itself_where_the_rig_stands() -> None:
     assert not any(guard.withholds(_fix(second), 0.1) for second in range(60))
 
 
+def test_a_receiver_whose_velocity_does_not_move_it_is_stuck_at_once() -> None:
+    """Whatever the rig does: it says itself that it moves, and that it does not."""
+    guard, moving = Guard(), (0.9, 0.0, 0.0)
+    assert not guard.withholds(_fix(0), 0.0)
+    assert not guard.withholds(GpsVelocity(0, 0, moving), 0.0)
+    assert not guard.withholds(_fix(1), 0.0)
+    assert guard.withholds(GpsVelocity(S, S, moving), 0.0)
+    assert guard.withholds(_fix(2), 0.0)
+    assert not guard.withholds(_fix(3, 37.91), 0.0)
+    assert not guard.withholds(GpsVelocity(3 * S, 3 * S, moving), 0.0)
+
+
+def test_a_fast_receiver_of_few_digits_may_say_one_position_twice() -> None:
+    """A step of the last digit is some decimetres."""
+    guard = Guard()
+    for tenth in range(100):
+        t_ns, lat_deg = tenth * S // 10, 37.9 + (tenth // 3) * 3e-6
+        assert not guard.withholds(GpsFix(t_ns, t_ns, lat_deg, 27.3, 80.0, (0.0,) * 9), 1.2)
+        assert not guard.withholds(GpsVelocity(t_ns, t_ns, (0.0, 1.2, 0.0)), 1.2)
+
+
 def test_stamps_out_of_order_are_withheld() -> None:
     """As a log's reader leaves them out: a replay must see the same."""
     guard = Guard()
