@@ -4,6 +4,7 @@ import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from fcntl import LOCK_EX, LOCK_NB, flock
 from pathlib import Path
 from typing import Any
 
@@ -16,17 +17,24 @@ class Journal:
     def __init__(self, folder: Path, kind: str, about: Mapping[str, Any]) -> None:
         """Begin; `about` says what is run, where and on what."""
         folder.mkdir(parents=True, exist_ok=True)
-        self._file = folder / f"{kind}-{datetime.now(UTC):%Y%m%d-%H%M%S}.jsonl"
+        path = folder / f"{kind}-{datetime.now(UTC):%Y%m%d-%H%M%S}.jsonl"
+        self._file = path.open("a", encoding="utf-8")
+        flock(self._file, LOCK_EX | LOCK_NB)  # as long as it is open, the run goes on
         self.add({"kind": kind, **about})
 
     def add(self, line: Mapping[str, Any]) -> None:
-        """Write a line, to the disk."""
-        with self._file.open("a", encoding="utf-8") as file:
-            file.write(json.dumps(dict(line)) + "\n")
+        """Write a line, at once."""
+        self._file.write(json.dumps(dict(line)) + "\n")
+        self._file.flush()
 
     def end(self) -> None:
         """Note that the run is whole."""
         self.add(_END)
+        self.close()
+
+    def close(self) -> None:
+        """Leave it, whole or not."""
+        self._file.close()
 
 
 @dataclass(frozen=True)
@@ -41,6 +49,8 @@ class Interrupted:
 def interrupted(folder: Path) -> Iterator[Interrupted]:
     """Yield the runs that were interrupted since somebody asked last."""
     for path in sorted(folder.glob("*.jsonl")):
+        if _goes_on(path):
+            continue
         lines = path.read_text(encoding="utf-8").splitlines()
         whole = [line for line in lines if line.endswith("}")]  # the last may be cut off
         if whole and json.loads(whole[-1]) == _END:
@@ -48,6 +58,15 @@ def interrupted(folder: Path) -> Iterator[Interrupted]:
         if whole:
             yield Interrupted(json.loads(whole[0]), len(whole) - 1)
         path.rename(path.with_suffix(".interrupted"))
+
+
+def _goes_on(path: Path) -> bool:
+    with path.open("a", encoding="utf-8") as file:
+        try:
+            flock(file, LOCK_EX | LOCK_NB)
+        except BlockingIOError:
+            return True
+    return False
 
 
 class Session:

@@ -138,6 +138,8 @@ def test_a_run_that_was_interrupted_is_told_once(tmp_path: Path) -> None:
     whole.add({"rss_mb": 1})
     whole.end()
     cut.add({"rss_mb": 1})
+    assert not interrupted_now(tmp_path)  # it goes on
+    cut.close()
     with next(tmp_path.glob("live-*.jsonl")).open("a", encoding="utf-8") as file:
         file.write('{"rss_mb"')  # a power cut in the middle of a line
     (run,) = interrupted_now(tmp_path)
@@ -159,7 +161,8 @@ def test_what_was_interrupted_goes_on_with_the_part_that_was(tmp_path: Path) -> 
 
 
 def test_the_command_appends_to_the_page_and_its_code_is_the_verdict(tmp_path: Path) -> None:
-    Journal(tmp_path / "soak", "live", {"when": "2026-11-28 20:00 UTC", "title": "10 minutes, live", "commit": "abc"})
+    cut = {"when": "2026-11-28 20:00 UTC", "title": "10 minutes, live", "commit": "abc"}
+    Journal(tmp_path / "soak", "live", cut).close()
     page = tmp_path / "soak.md"
     asked = ["--only", "hours", "--hours", "0.002", "--folder", str(tmp_path / "soak"), "--document", str(page)]
     code = main([*asked, "--note", "Beside the tests."])
