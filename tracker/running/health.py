@@ -110,6 +110,8 @@ class Health:
 
 #: The rate is of the measurements within this time, of at most so many.
 _RATE_S, _RATE_MOST = 2.0, 1024
+#: What has waited, and then comes all at once, did not come a million times a second.
+_LEAST_S = 0.1
 #: What a device said just before it was pulled out may still be on its way.
 _UNPLUGGED_NS = 200_000_000
 
@@ -204,7 +206,7 @@ class Watch:
         if len(self._times_ns) < 2:
             return 0.0
         # over the time since the first, not between first and last: what has stopped slows down
-        return len(self._times_ns) / max((now_ns - self._times_ns[0]) * 1e-9, 1e-3)
+        return len(self._times_ns) / max((now_ns - self._times_ns[0]) * 1e-9, _LEAST_S)
 
 
 def _clause(sentence: str) -> str:

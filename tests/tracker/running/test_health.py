@@ -115,6 +115,14 @@ def test_pauses_double_to_two_seconds_and_begin_anew_after_a_good_run() -> None:
     assert backoff.after(10.0) == 0.25
 
 
+def test_what_has_waited_and_comes_all_at_once_has_a_rate_that_can_be_told() -> None:
+    """After a stall a thousand samples are taken in one go; the server takes no message with a rate of a million."""
+    watch = Watch("imu", 0)
+    for _ in range(1200):
+        watch.arrived(5 * S)
+    assert watch.read(5 * S).rate_hz < 2e4
+
+
 def test_latencies_and_rates() -> None:
     """To a bin, with whatever is beyond the last one counted there."""
     latencies, rate = Latencies(), Rate()
