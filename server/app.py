@@ -13,9 +13,14 @@ from server.access import Access
 from server.entrance import entrance_routes
 from server.guards import Guard
 from server.limits import Limits, Throttle, Visitors
-from server.routes import Bundle, api_routes, log_routes, page_routes
-from server.sessions import MAX_SESSIONS, MAX_VIEWERS, Sessions
+from server.log_routes import log_routes, upload_routes
+from server.log_store import LogStore
+from server.replays import Replays
+from server.routes import Bundle, api_routes, page_routes
+from server.session_routes import session_routes
+from server.sessions import Sessions
 from server.sockets import socket_routes
+from server.upkeep import upkeep
 
 LOOPBACK_HOSTS = ("127.0.0.1", "localhost", "::1")
 #: FastAPI would export traces where its environment variables say so; nothing but loopback is ever contacted.
@@ -39,8 +44,9 @@ def create_app(
     any_address: bool = False,
     console_url: str | None = None,
     logs: Mapping[str, Path] | None = None,
-    max_sessions: int = MAX_SESSIONS,
-    max_viewers: int = MAX_VIEWERS,
+    sessions: Sessions | None = None,
+    store: LogStore | None = None,
+    replays: Replays | None = None,
 ) -> FastAPI:
     """Return the server's application; `app.state` has its `sessions`, its `access`, and its `visitors` for the door.
 
@@ -54,16 +60,26 @@ def create_app(
         any_address: Whether an IP address there is taken for ours as well: where the server is bound to all of them.
         console_url: Where `/console` leads, if anywhere.
         logs: The recorded walks that `/api/logs` offers, by session name.
-        max_sessions: Sessions at a time.
-        max_viewers: Viewers of one session.
+        sessions: The server's; None for fresh ones.
+        store: Where uploaded walks are kept, in the place of `logs`.
+        replays: Of the walks in the store.
     """
-    sessions = Sessions(monotonic_ns, max_sessions, max_viewers)
+    sessions = sessions or Sessions(monotonic_ns)
     # The interactive documentation loads its scripts from elsewhere, so there is none; /openapi.json stays.
-    app = FastAPI(title="Agora", docs_url=None, redoc_url=None, telemetry=_NO_TELEMETRY)
+    app = FastAPI(
+        title="Agora",
+        docs_url=None,
+        redoc_url=None,
+        telemetry=_NO_TELEMETRY,
+        lifespan=lambda app: upkeep(store, replays),
+    )
     app.state.sessions, app.state.access = sessions, access
     app.state.visitors = Visitors(limits or Limits(), monotonic)
     app.include_router(api_routes(sessions, site, web_folder, access))
-    app.include_router(log_routes(logs or {}, access))
+    app.include_router(session_routes(sessions, access, replays))
+    app.include_router(log_routes(logs or {} if store is None else store, access))
+    if store is not None:
+        app.include_router(upload_routes(store, access, lambda name: _end_replays(replays, name)))
     app.include_router(entrance_routes(access))
     app.include_router(page_routes(web_folder, models_folder, console_url, access))
     app.include_router(socket_routes(sessions, access))
@@ -71,6 +87,11 @@ def create_app(
     app.add_middleware(Throttle, visitors=app.state.visitors, large_bodies=_is_upload)
     app.add_middleware(Guard, allowed_hosts=allowed_hosts, any_address=any_address)
     return app
+
+
+def _end_replays(replays: Replays | None, log: str) -> None:
+    if replays is not None:
+        replays.stop_all_of(log, "The walk was deleted.")
 
 
 def _is_upload(scope: Scope) -> bool:

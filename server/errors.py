@@ -7,6 +7,8 @@ ServerError
 ├── UnknownSession       no session of that name
 ├── TokenRefused         a token that is not this server's, or whose time is over
 ├── ServerFull           as many viewers or sessions as the server will take
+├── LogRefused           an uploaded file that is not kept, with the HTTP status that says why
+├── ReplayRefused        an uploaded walk that cannot be replayed, or not with that estimator
 ├── LinkRefused          a server will not have this rig: wrong token, or another rig took the session
 ├── SensorMissing        a sensor that a calibration needs is not there (the command line exits 3)
 └── ConsoleUnavailable   the operator's console cannot start; everything else goes on without it
@@ -39,6 +41,19 @@ class TokenRefused(ServerError):
 
 class ServerFull(ServerError):
     """A limit of the server is reached."""
+
+
+class LogRefused(ServerError):
+    """An uploaded file is not kept."""
+
+    def __init__(self, status: int, sentence: str) -> None:
+        super().__init__(sentence)
+        self.status = status
+        """Of HTTP."""
+
+
+class ReplayRefused(ServerError):
+    """An uploaded walk cannot be replayed as it was asked."""
 
 
 class LinkRefused(ServerError):

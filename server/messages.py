@@ -133,6 +133,9 @@ class Session(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A session, as viewers and `/api/sessions` get it: every field, always."""
 
     name: Name
+    """Its address: `/ws/view/NAME`."""
+    title: Name | None
+    """What an operator calls it, to be read in the place of its name; null for nothing."""
     kind: Literal["live", "replay"]
     log: Name | None
     """The recording that is played; null for a live walk."""

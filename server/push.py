@@ -21,7 +21,7 @@ from websockets.typing import Subprotocol
 from server.errors import LinkRefused, MalformedMessage
 from server.messages import ControlReply, ControlRequest, encode, parse_control
 from server.outbox import Outbox
-from server.sessions import REPLACED
+from server.sessions import ENDED, REPLACED
 from server.wire import SUBPROTOCOL, FrameMeta, PoseUpdate, encode_frame, encode_pose
 from tracker.errors import InputError, MissingSensor
 from tracker.estimator import NO_MOTION_MODEL, Pose
@@ -260,6 +260,9 @@ class RigLink:
         if connection.close_code == REPLACED:
             self.refused = LinkRefused(f"Another rig took {self._url}: give this one another session's name.")
             _logger.error("%s", self.refused)
+        elif connection.close_code == ENDED:
+            self.refused = LinkRefused(f"{self._url} was ended: {connection.close_reason}")
+            _logger.warning("%s", self.refused)
         elif connection.close_code not in (1000, 1001, 1012, 1006, None):
             _logger.warning("the server closed the link: %s %s", connection.close_code, connection.close_reason)
 

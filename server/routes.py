@@ -70,24 +70,6 @@ def page_routes(web_folder: Path, models_folder: Path, console_url: str | None, 
     return router
 
 
-def log_routes(logs: Mapping[str, Path], access: Access) -> APIRouter:
-    """Return the list of the recorded walks that are served, by session name, and the walks themselves: personal data."""
-    router = APIRouter(dependencies=[Depends(needs(access, "operate"))])
-
-    @router.get("/api/logs")
-    def all_logs() -> dict[str, Any]:
-        return {"logs": [{"name": name, "bytes": path.stat().st_size} for name, path in logs.items() if path.is_file()]}
-
-    @router.get("/api/logs/{name}")
-    def one_log(name: str) -> FileResponse:
-        path = logs.get(name)
-        if path is None or not path.is_file():
-            raise HTTPException(404, "There is no log of that name: see /api/logs for those that there are.")
-        return FileResponse(path, media_type="application/octet-stream", filename=path.name)
-
-    return router
-
-
 def api_routes(sessions: Sessions, site: Mapping[str, Any], web_folder: Path, access: Access) -> APIRouter:
     """Return the JSON interface, health, readiness and metrics."""
     router, page = APIRouter(), Metrics(sessions)

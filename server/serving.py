@@ -2,6 +2,7 @@
 
 import logging
 from pathlib import Path
+from time import monotonic_ns, time_ns
 from types import TracebackType
 from typing import Final, Self
 
@@ -10,7 +11,10 @@ from server.access import Access
 from server.app import create_app
 from server.configuration import Configuration
 from server.grants import Grant
+from server.log_store import LogStore
+from server.replays import Replays
 from server.secret_file import secret_of
+from server.sessions import Sessions
 from server.site_facts import site_facts
 from server.web_server import WebServer
 
@@ -18,6 +22,8 @@ _logger = logging.getLogger(__name__)
 
 
 _FIRST_STAY_S: Final = 12 * 3600
+_YEAR_S: Final = 366 * 86_400
+_MB: Final = 10**6
 
 
 class Serving:
@@ -33,6 +39,23 @@ class Serving:
         models = site.folder / "built"
         # on loopback too: a proxy may stand there, and behind it everybody
         self._access = Access.with_secret(secret_of(configuration.data_folder))
+        sessions = Sessions(monotonic_ns, configuration.max_sessions, configuration.max_viewers)
+        store = LogStore(
+            configuration.data_folder,
+            max_bytes=configuration.max_upload_mb * _MB,
+            max_total_bytes=configuration.max_stored_mb * _MB,
+            keep_days=configuration.keep_days,
+            now_s=lambda: time_ns() * 1e-9,
+        )
+        replays = Replays(
+            sessions,
+            store,
+            site=site.folder,
+            link=self._link,
+            most=configuration.max_replays,
+            idle_s=configuration.replay_idle_s,
+            memory_bytes=configuration.replay_memory_mb * _MB,
+        )
         app = create_app(
             web_folder=web,
             models_folder=models,
@@ -40,8 +63,9 @@ class Serving:
             access=self._access,
             allowed_hosts=configuration.hosts,
             any_address=not configuration.on_loopback,
-            max_sessions=configuration.max_sessions,
-            max_viewers=configuration.max_viewers,
+            sessions=sessions,
+            store=store,
+            replays=replays,
         )
         self._server = WebServer(app, configuration.host, configuration.port)
 
@@ -49,6 +73,11 @@ class Serving:
     def url(self) -> str:
         """The address of the pages on this machine, ending in a slash."""
         return self._server.url
+
+    def _link(self, session: str) -> tuple[str, str]:
+        """Return a session's address for a rig of our own, and its token."""
+        signer = self._access.signer
+        return self._server.rig_url(session), signer.issue("rig", int(signer.now_s()) + _YEAR_S, session)
 
     def first_url(self) -> str:
         """Return an address that makes whoever opens it first, within ten minutes, an administrator for twelve hours."""

@@ -36,6 +36,7 @@ _DEFAULTS: Final[dict[str, Any]] = {
     "health": {},
     "sharing": False,
 }
+_AWAITED = "The rig has not come yet."
 _LEFT = "The rig has left: what is shown is the last that it sent."
 
 
@@ -62,7 +63,10 @@ class Session:
         self.tally = Tally()
         """What went to viewers."""
         self.viewers: set[Mailbox] = set()
+        self.title: str | None = None
+        """What an operator calls it, in the place of its name."""
         self._fields = dict(_DEFAULTS)
+        self._came = False
         self._rig: Mailbox | None = None
         self._frame: tuple[int, bytes] | None = None
         self._hidden: bytes | None = None
@@ -84,9 +88,9 @@ class Session:
 
     def describe(self) -> dict[str, Any]:
         """Return the session as viewers and `/api/sessions` get it."""
-        session = {"name": self.name, **self._fields, "connected": self.connected}
+        session = {"name": self.name, "title": self.title, **self._fields, "connected": self.connected}
         if not self.connected:
-            session["notice"] = _LEFT
+            session["notice"] = _LEFT if self._came else _AWAITED
             if session["playback"] is not None:
                 session["playback"] = session["playback"] | {"playing": False}
         return session
@@ -103,7 +107,7 @@ class Session:
         if self._rig is not None:
             self._rig.close(REPLACED, "another rig took this session")
             self._fail_pending()
-        self._rig = rig
+        self._rig, self._came = rig, True
         self._change({"sharing": False})  # whoever had it may have shared; this rig says so itself, if it does
 
     def detach_rig(self, rig: Mailbox) -> None:
@@ -140,6 +144,10 @@ class Session:
                 viewer.put_pose(data, t_ns)
         self.received_bytes += len(data)
 
+    def expect(self, fields: dict[str, Any]) -> None:
+        """Note what is known of a rig that has not come yet (see `messages.SessionFields`)."""
+        self._fields |= fields
+
     # -- the viewers --------------------------------------------------------------------------------------------------
 
     def join(self, viewer: Mailbox) -> None:
@@ -173,6 +181,11 @@ class Session:
         self._rig.put_text(messages.encode(ControlRequest(key, request.action, request.value)))
 
     # -----------------------------------------------------------------------------------------------------------------
+
+    def rename(self, title: str) -> None:
+        """Call it something; nothing for its name again. Its address stays: rigs and viewers need not know."""
+        self.title = title or None
+        self._tell()
 
     def end(self, code: int, reason: str) -> None:
         """Tell viewers why it ends, and close them and the rig with that code."""
@@ -235,6 +248,14 @@ class Sessions:
     def __iter__(self) -> Iterator[Session]:
         return iter(self._sessions.values())
 
+    def __contains__(self, name: object) -> bool:
+        return name in self._sessions
+
+    def end(self, name: str, code: int, reason: str) -> None:
+        """End a session: viewers and rig are told why, and it is forgotten; `UnknownSession` where there is none."""
+        self.get(name).end(code, reason)
+        del self._sessions[name]
+
     def get(self, name: str) -> Session:
         """Return a session; `UnknownSession` where no rig ever opened it."""
         if name not in self._sessions:
@@ -275,5 +296,4 @@ class Sessions:
         idle = next((s for s in self if not s.connected), None)
         if idle is None:
             raise ServerFull(f"{self._max_sessions} rigs are connected already: try again when one has left.")
-        idle.end(ENDED, "This walk has ended, and another has its place.")
-        del self._sessions[idle.name]
+        self.end(idle.name, ENDED, "This walk has ended, and another has its place.")

@@ -8,12 +8,13 @@ import sys
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
+from time import monotonic_ns
 
 import httpx
 import pytest
 from websockets.exceptions import ConnectionClosed
 
-from server.sessions import ENDED, RESTART
+from server.sessions import ENDED, RESTART, Sessions
 from server.wire import encode_frame
 from tests.server.serving import HELD_S, bytes_of, rig, serving, text_of, until, viewer
 from tests.server.wire_examples import TINY_JPEG, example_frame
@@ -37,7 +38,7 @@ def test_each_session_has_its_own_rig_and_its_own_viewers(tmp_path: Path) -> Non
 
 def test_a_server_takes_as_many_sessions_and_viewers_as_it_was_told(tmp_path: Path) -> None:
     with ExitStack() as stack:
-        server = stack.enter_context(serving(tmp_path, max_sessions=1, max_viewers=1))
+        server = stack.enter_context(serving(tmp_path, sessions=Sessions(monotonic_ns, 1, 1)))
         first = stack.enter_context(rig(server, "a"))
         watching = stack.enter_context(viewer(server, "a"))
         assert text_of(watching, "hello")

@@ -70,7 +70,10 @@ export interface SensorHealth {
 
 /** A session, as viewers and `/api/sessions` get it: every field, always. */
 export interface Session {
+  /** Its address: `/ws/view/NAME`. */
   readonly name: string;
+  /** What an operator calls it, to be read in the place of its name; null for nothing. */
+  readonly title: string | null;
   readonly kind: "live" | "replay";
   /** The recording that is played; null for a live walk. */
   readonly log: string | null;

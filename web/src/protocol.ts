@@ -62,6 +62,7 @@ export function parseSession(value: unknown): Session {
   const kind: SessionKind = session["kind"] === "live" ? "live" : "replay";
   return {
     name,
+    title: text_(session["title"], "") || null,
     kind,
     log: typeof session["log"] === "string" ? session["log"] : null,
     duration_s: Math.max(0, number(session["duration_s"], 0)),
