@@ -7,6 +7,9 @@ import type { Overlay } from "./overlay";
 import { wayTo, wayWords } from "./plan";
 import type { FrameMessage } from "./wire";
 
+/** Half the side of the plan about a visitor who is on the site, metres. */
+const AROUND_M = 80;
+
 export class Guide {
   /** Of the site, once it is known. */
   map: SiteMap | null = null;
@@ -20,6 +23,7 @@ export class Guide {
     if (this.panel.hidden || pose === null || this.map === null) return;
     const heading_rad = pose.headingKnown ? headingOf(pose.T_site_cam) : null;
     const place = [pose.T_site_cam[3] ?? 0, pose.T_site_cam[7] ?? 0] as const;
+    if (this.map.holds(place)) this.map.zoom(place, AROUND_M);
     this.map.show(place, heading_rad, Math.atan(lens.width_px / (2 * lens.fx_px)), doubt);
     const way = wayTo(place, heading_rad, this.map.middle);
     this.arrow.hidden = way.turn_rad === null;

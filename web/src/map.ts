@@ -7,6 +7,9 @@ const SVG = "http://www.w3.org/2000/svg";
 /** A doubt larger than this is drawn no larger: it would cover the plan. */
 const LARGEST_DOUBT_M = 60;
 
+/** Called with a place that is tapped, how many metres a pixel of the page is, and with what it was tapped. */
+export type Chosen = (place: Place, metresPerPixel: number, pointerType: string) => void;
+
 export class SiteMap {
   readonly frame: Frame;
   private readonly svg: SVGSVGElement;
@@ -14,12 +17,11 @@ export class SiteMap {
   private readonly doubt = make("circle", "doubt");
   private readonly dot = make("circle", "dot");
 
-  /** Put the plan of these outlines into an element. `chosen` is called with a place that is tapped. */
-  constructor(parent: HTMLElement, outlines: readonly (readonly Place[])[], chosen?: (place: Place) => void) {
+  /** Put the plan of these outlines into an element. */
+  constructor(parent: HTMLElement, outlines: readonly (readonly Place[])[], chosen?: Chosen) {
     this.frame = frameOf(outlines);
     this.svg = make("svg", "map") as SVGSVGElement;
-    const { west, south, east, north } = this.frame;
-    this.svg.setAttribute("viewBox", `${west} ${-north} ${east - west} ${north - south}`);
+    this.look(this.frame);
     this.svg.setAttribute("role", "img");
     this.svg.setAttribute("aria-label", "Plan of the site, north up, with your place");
     for (const outline of outlines) {
@@ -30,7 +32,26 @@ export class SiteMap {
     this.dot.setAttribute("r", "2.4");
     this.svg.append(this.doubt, this.cone, this.dot);
     parent.replaceChildren(this.svg);
-    if (chosen) this.svg.addEventListener("click", (event) => chosen(this.placeAt(event.clientX, event.clientY)));
+    if (!chosen) return;
+    this.svg.addEventListener("click", ({ clientX, clientY, pointerType }: PointerEvent) => {
+      const [place, beside] = [this.placeAt(clientX, clientY), this.placeAt(clientX + 1, clientY)];
+      chosen(place, Math.hypot(beside[0] - place[0], beside[1] - place[1]), pointerType);
+    });
+  }
+
+  /** Whether a place is on the plan. */
+  holds(place: Place): boolean {
+    const [e, n] = within(place, this.frame);
+    return e === place[0] && n === place[1];
+  }
+
+  /** Show only what lies about a place, to that many metres on each side. */
+  zoom([e, n]: Place, half_m: number): void {
+    this.look({ west: e - half_m, south: n - half_m, east: e + half_m, north: n + half_m });
+  }
+
+  private look({ west, south, east, north }: Frame): void {
+    this.svg.setAttribute("viewBox", `${west} ${-north} ${east - west} ${north - south}`);
   }
 
   /** Where the site's middle is. */

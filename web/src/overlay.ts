@@ -66,6 +66,14 @@ export class Overlays {
   }
 }
 
+/** While the square is dragged: both it and what is behind it are to be seen. */
+export const GHOST: Laying = { share: SHARES.ghost[0], outline: SHARES.ghost[1], clear_m: 0, eye_m: 1.65 };
+
+/** Return a laying through which what stands today can be found. */
+export function seenThrough({ share, outline, ...rest }: Laying): Laying {
+  return { ...rest, share: 0.3 * share, outline: 0.6 * Math.max(share, outline) };
+}
+
 /** Before the first pose. */
 export const NOTHING: Overlay = {
   style: "none",
