@@ -13,6 +13,7 @@ from fastapi import FastAPI
 
 from server.connections import protocols
 from server.errors import AddressUnavailable, PortInUse, ServerError
+from server.limits import Limits, Visitors
 from server.sessions import Sessions
 from server.wire import MAX_FRAME_BYTES
 
@@ -42,7 +43,8 @@ class WebServer:
         self.port: int = self._socket.getsockname()[1]
         config = uvicorn.Config(
             app,
-            **protocols(app.state.visitors),
+            # a page of another kind, as a calibration's, has nobody at the door but for this
+            **protocols(getattr(app.state, "visitors", None) or Visitors(Limits(), monotonic)),
             ws_max_size=MAX_FRAME_BYTES,
             ws_per_message_deflate=False,  # pictures are compressed already
             access_log=False,
