@@ -7,7 +7,7 @@ from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from signal import SIGINT, signal
 from threading import Event
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 from rich.console import Console
@@ -15,11 +15,13 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
 
 from server.calibrating.feed import Feed, LiveFeed, recorded_feed
 from server.calibrating.feed import Progress as Told
-from server.calibrating.result import Result
 from server.options import Browser, Port
 from tracker.calibrate.board import DICTIONARIES, Board
 from tracker.errors import InputError
 from tracker.rig_file import DEFAULT_PLACE, RigFile, read_rig_file
+
+if TYPE_CHECKING:  # figures need matplotlib, which takes a second, and every command of agora would wait for it
+    from server.calibrating.result import Result
 
 calibrate = typer.Typer(
     no_args_is_help=True,
@@ -261,7 +263,7 @@ def _page(collection: object, port: int, browser: bool) -> Iterator[None]:
         yield
 
 
-def _finish(result: Result, place: Path, report: Path | None, *, as_json: bool, dry_run: bool) -> None:
+def _finish(result: "Result", place: Path, report: Path | None, *, as_json: bool, dry_run: bool) -> None:
     """Tell, keep and draw; end with 1 where nothing was good enough to keep."""
     if report is not None:
         from server.report import write_report
@@ -277,7 +279,7 @@ def _finish(result: Result, place: Path, report: Path | None, *, as_json: bool, 
         raise typer.Exit(1)
 
 
-def _print(result: Result, place: Path, dry_run: bool) -> None:
+def _print(result: "Result", place: Path, dry_run: bool) -> None:
     for sentence in result.found:
         out.print(f"  {sentence}", soft_wrap=True, markup=False)
     for sentence in result.doubts:
