@@ -75,7 +75,7 @@ def create_app(
     )
     app.state.sessions, app.state.access = sessions, access
     app.state.visitors = Visitors(limits or Limits(), monotonic)
-    app.include_router(api_routes(sessions, site, web_folder, access))
+    app.include_router(api_routes(sessions, site, web_folder, access, alone=store is not None))
     app.include_router(session_routes(sessions, access, replays))
     app.include_router(log_routes(logs or {} if store is None else store, access))
     if store is not None:

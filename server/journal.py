@@ -13,6 +13,9 @@ _SECRET: Final = re.compile(
     r"""(?i)\b((?:token|code|secret|authorization|cookie)["']?\s*[=:]\s*["']?(?:bearer\s+)?|bearer\s+)[^\s"'&,;}]+"""
 )
 
+#: uvicorn says this, as an error, of every WebSocket that is refused with a status.
+_NO_FAULT: Final = "ASGI callable returned without completing handshake."
+
 
 class _Events(logging.Formatter):
     """Formats a record without the secrets in it. Fields given by `extra` are the event's own."""
@@ -61,5 +64,6 @@ def keep_journal(form: Literal["text", "json"], level: str) -> None:
     """Send what is logged from now on to standard error, in one of both forms."""
     handler = logging.StreamHandler(sys.stderr)
     handler.setFormatter(JsonLines() if form == "json" else TextLines())
+    handler.addFilter(lambda record: record.msg != _NO_FAULT)
     logging.basicConfig(level=logging.WARNING, handlers=[handler], force=True)
     logging.getLogger("server").setLevel(level.upper())

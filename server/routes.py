@@ -70,8 +70,10 @@ def page_routes(web_folder: Path, models_folder: Path, console_url: str | None, 
     return router
 
 
-def api_routes(sessions: Sessions, site: Mapping[str, Any], web_folder: Path, access: Access) -> APIRouter:
-    """Return the JSON interface, health, readiness and metrics."""
+def api_routes(
+    sessions: Sessions, site: Mapping[str, Any], web_folder: Path, access: Access, *, alone: bool = False
+) -> APIRouter:
+    """Return the JSON interface, health, readiness and metrics; `alone` is a server that is well without any walk."""
     router, page = APIRouter(), Metrics(sessions)
 
     @router.get("/api/version")
@@ -90,15 +92,16 @@ def api_routes(sessions: Sessions, site: Mapping[str, Any], web_folder: Path, ac
     async def health(request: Request) -> JSONResponse:
         report = [_health(session, sessions.now_ns()) for session in sessions]
         # A replay that somebody has paused is well, too.
-        ok = any(entry["connected"] and (entry["frames_flow"] or not entry["playing"]) for entry in report)
+        ok = alone or any(entry["connected"] and (entry["frames_flow"] or not entry["playing"]) for entry in report)
         # whoever is asked only whether all is well need not know who walks where
         told = {"ok": ok, "sessions": report} if access.allows(request.headers, "operate") else {"ok": ok}
         return JSONResponse(told, 200 if ok else 503)
 
     @router.get("/ready")
     async def ready() -> JSONResponse:
-        ok = (web_folder / "ar.html").is_file()
-        return JSONResponse({"ok": ok, "reason": None if ok else _NOT_BUILT}, 200 if ok else 503)
+        built = (web_folder / "ar.html").is_file()
+        reason = _NOT_BUILT if not built else "The server is being stopped." if sessions.stopping else None
+        return JSONResponse({"ok": reason is None, "reason": reason}, 503 if reason else 200)
 
     @router.get("/metrics", dependencies=[Depends(needs(access, "operate"))])
     async def metrics() -> Response:

@@ -242,6 +242,8 @@ class Sessions:
         self.now_ns = now_ns
         """The clock that frames are stamped with."""
         self.traffic = Traffic()
+        self.stopping = False
+        """Whether goodbye was said: the server takes nobody any more."""
         self._max_sessions, self._max_viewers = max_sessions, max_viewers
         self._sessions: dict[str, Session] = {}
 
@@ -278,6 +280,7 @@ class Sessions:
 
     def say_goodbye(self) -> None:
         """Tell every viewer and every rig that the server stops; they may come again."""
+        self.stopping = True
         for session in self:
             session.end(RESTART, "The server is being stopped: this page connects again when it is back.")
 

@@ -4,6 +4,7 @@ Each connection has two tasks, one that reads and one that empties its mailbox; 
 """
 
 import asyncio
+import logging
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from time import monotonic
@@ -21,6 +22,8 @@ from server.limits import Bucket
 from server.messages import Ack, ControlReply, encode, parse_from_viewer
 from server.sessions import Session, Sessions
 from server.wire import SUBPROTOCOL
+
+_logger = logging.getLogger(__name__)
 
 MALFORMED: Final = 1007
 #: "Policy violation", RFC 6455.
@@ -41,47 +44,70 @@ _NOT_YOURS: Final = "Only the walker can share the camera's picture."
 _OTHER_VERSION: Final = f"This server speaks {SUBPROTOCOL} alone: take the same version on both sides."
 _EXPIRED: Final = "The token that let you in has expired."
 
+#: What `/metrics` counts as refused, by close code.
+_REASONS: Final = {MALFORMED: "malformed", TOO_MUCH: "too_much", TRY_LATER: "too_slow", FORBIDDEN: "expired"}
+_STATUS_REASONS: Final = {401: "token", 403: "token", 404: "no_session", 406: "version", 503: "full"}
+
 _Take = Callable[[str | bytes], None]
 
 
 def socket_routes(sessions: Sessions, access: Access) -> APIRouter:
     """Return both sockets."""
-    router = APIRouter()
+    router, refused = APIRouter(), sessions.traffic.refused
+
+    async def deny(websocket: WebSocket, status: int, sentence: str) -> None:
+        refused[_STATUS_REASONS[status]] += 1
+        await websocket.send_denial_response(PlainTextResponse(sentence, status))
+
+    async def close(websocket: WebSocket, code: int, reason: str, sentence: str) -> None:
+        refused[reason] += 1
+        await websocket.close(code, _reason(sentence))
+
+    def tell(event: str, name: str, mailbox: Mailbox) -> None:
+        code, why = mailbox.closing or (None, "it left")
+        if code in _REASONS:
+            refused[_REASONS[code]] += 1
+        _logger.info(event, extra={"session": name, "why": why, "code": code})
 
     @router.websocket("/ws/rig/{name}")
     async def rig(websocket: WebSocket, name: str) -> None:
         try:
             grant = access.rig_of(websocket.headers)
         except TokenRefused as exc:
-            await _deny(websocket, 401, str(exc))
+            await deny(websocket, 401, str(exc))
             return
         if not grant.allows("publish", name):
-            await _deny(websocket, 403, "This token is not a rig's of this session: see `agora token rig`.")
+            await deny(websocket, 403, "This token is not a rig's of this session: see `agora token rig`.")
             return
         if not _speaks(websocket):
-            await _deny(websocket, 406, _OTHER_VERSION)
+            await deny(websocket, 406, _OTHER_VERSION)
             return
         try:
             session = sessions.open(name)
         except (UnknownSession, ServerFull) as exc:
-            await _deny(websocket, 404 if isinstance(exc, UnknownSession) else 503, str(exc))
+            await deny(websocket, 404 if isinstance(exc, UnknownSession) else 503, str(exc))
             return
         await _accept(websocket)
-        await _serve_rig(websocket, session, access.left_s(grant), sessions.now_ns)
+        mailbox = Mailbox()
+        _logger.info("a rig came", extra={"session": name})
+        try:
+            await _serve_rig(websocket, session, mailbox, access.left_s(grant), sessions.now_ns)
+        finally:
+            tell("a rig left", name, mailbox)
 
     @router.websocket("/ws/view/{name}")
     async def view(websocket: WebSocket, name: str) -> None:
         await _accept(websocket)
         if not _speaks(websocket):
-            await websocket.close(OTHER_VERSION, _OTHER_VERSION)
+            await close(websocket, OTHER_VERSION, "version", _OTHER_VERSION)
             return
         try:
             grant = access.grant_of(websocket.headers)
         except TokenRefused as exc:
-            await websocket.close(FORBIDDEN, _reason(str(exc)))
+            await close(websocket, FORBIDDEN, "token", str(exc))
             return
         if not grant.allows("watch", name):
-            await websocket.close(FORBIDDEN, "This token is for another session.")
+            await close(websocket, FORBIDDEN, "token", "This token is for another session.")
             return
         mailbox = Mailbox()
         mailbox.role = grant.role
@@ -89,22 +115,27 @@ def socket_routes(sessions: Sessions, access: Access) -> APIRouter:
             session = sessions.get(name)
             session.join(mailbox)
         except (UnknownSession, ServerFull) as exc:
-            code = NO_SESSION if isinstance(exc, UnknownSession) else TRY_LATER
-            await websocket.close(code, _reason(str(exc)))
+            code, reason = (NO_SESSION, "no_session") if isinstance(exc, UnknownSession) else (TRY_LATER, "full")
+            await close(websocket, code, reason, str(exc))
             return
-        await _serve_viewer(websocket, session, mailbox, grant, access.left_s(grant))
+        _logger.info("a viewer came", extra={"session": name, "role": grant.role, "viewers": len(session.viewers)})
+        try:
+            await _serve_viewer(websocket, session, mailbox, grant, access.left_s(grant))
+        finally:
+            tell("a viewer left", name, mailbox)
 
     return router
 
 
-async def _serve_rig(websocket: WebSocket, session: Session, left_s: float | None, now_ns: Callable[[], int]) -> None:
+async def _serve_rig(
+    websocket: WebSocket, session: Session, mailbox: Mailbox, left_s: float | None, now_ns: Callable[[], int]
+) -> None:
     def take(message: str | bytes) -> None:
         if isinstance(message, str):
             session.take_text(message)
         else:
             session.take_binary(message, now_ns())
 
-    mailbox = Mailbox()
     session.attach_rig(mailbox)
     try:
         await _exchange(websocket, mailbox, take, left_s, _RIG_HZ)
@@ -191,10 +222,6 @@ def _speaks(websocket: WebSocket) -> bool:
 
 async def _accept(websocket: WebSocket) -> None:
     await websocket.accept(SUBPROTOCOL if SUBPROTOCOL in websocket.scope["subprotocols"] else None)
-
-
-async def _deny(websocket: WebSocket, status: int, sentence: str) -> None:
-    await websocket.send_denial_response(PlainTextResponse(sentence, status))
 
 
 def _reason(sentence: str) -> str:

@@ -1,15 +1,19 @@
 """`/metrics` as a Prometheus reader takes it: what came, what went, what was dropped, how long it took."""
 
 import asyncio
+from pathlib import Path
+from time import monotonic_ns
 
 import pytest
 from prometheus_client.parser import text_string_to_metric_families
+from websockets.exceptions import InvalidStatus
 
 from server.fanout import Mailbox
 from server.metrics import Metrics
 from server.sessions import Sessions
 from server.traffic import BOUNDS_S, Durations
 from server.wire import encode_frame, encode_pose
+from tests.server.serving import rig, serving, text_of, until, until_closed, viewer
 from tests.server.wire_examples import TINY_JPEG, example_frame, example_pose
 
 
@@ -120,3 +124,24 @@ def test_a_duration_falls_into_the_class_whose_end_it_does_not_pass() -> None:
     counts = dict(durations.cumulative())
     assert (counts[str(BOUNDS_S[0])], counts[str(BOUNDS_S[2])], counts[str(BOUNDS_S[3])]) == (1, 1, 2)
     assert (counts[str(BOUNDS_S[-1])], counts["+Inf"]) == (2, 3)
+
+
+def test_those_turned_away_and_those_sent_off_are_counted(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    caplog.set_level("INFO", "server.sockets")
+    with serving(tmp_path, sessions=Sessions(monotonic_ns, 1, 1)) as server:
+        refused = server.app.state.sessions.traffic.refused
+        with rig(server), viewer(server) as one:
+            assert text_of(one, "hello")
+            with pytest.raises(InvalidStatus):
+                rig(server, "walk", "no token")
+            with pytest.raises(InvalidStatus):
+                rig(server, "second")
+            for name in ("walk", "nobody"):
+                with viewer(server, name) as other:
+                    until_closed(other)
+            one.send("no message")
+            until_closed(one)
+        until(lambda: refused == {"token": 1, "full": 2, "no_session": 1, "malformed": 1})
+    events = [record.message for record in caplog.records if record.name == "server.sockets"]
+    assert events[:2] == ["a rig came", "a viewer came"]
+    assert sorted(events[2:]) == ["a rig left", "a viewer left"]

@@ -100,7 +100,7 @@ def test_serve_answers_and_ends_by_sigterm_with_its_journal_in_json(served: "sub
     journal = served.stderr.read()
     assert code not in journal
     events = [json.loads(line) for line in journal.splitlines()]
-    assert [event["event"] for event in events] == ["serving", "stopping", "stopped"]
+    assert [event["event"] for event in events] == ["serving", "stopping", "stopped"], events
     assert events[0]["url"] == url
 
 

@@ -139,3 +139,10 @@ def test_only_an_operator_comes_near_the_walks(tmp_path: Path, store: LogStore, 
                 body = json.dumps({"log": "a"}) if method in ("POST", "PATCH") else None
                 assert ask(server, method, path, headers=headers, content=body).status_code == status
         assert ask(server, "GET", "/api/logs/a", headers=shown["operator"]).content == walk
+
+
+def test_a_server_without_walks_is_well_until_it_stops(server: WebServer) -> None:
+    assert ask(server, "GET", "/health").json() == {"ok": True, "sessions": []}
+    assert ask(server, "GET", "/ready").json() == {"ok": True, "reason": None}
+    server.app.state.sessions.stopping = True
+    assert ask(server, "GET", "/ready").status_code == 503
