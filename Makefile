@@ -91,6 +91,7 @@ wire: $(BIN)/.demo ## write the page's types of the messages anew, from server/m
 
 gallery: setup $(BIN)/.dev ## draw docs/gallery.md and the golden pictures of the tests anew, in a browser
 	@$(BIN)/python -m tests.web.gallery
+	@$(BIN)/python -m tests.web.ar_gallery
 
 fuzz: $(BIN)/.dev ## fuzz the readers of NMEA and of logs; ARGS="nmea --runs 1000000" for one of them, longer
 	@$(BIN)/python -m tests.fuzz $(ARGS)

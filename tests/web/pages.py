@@ -101,6 +101,17 @@ class ArPage:
         self.page.locator("#seek").fill(str(position_s))
         assert self.replied("seek", before + 1)["ok"]
 
+    def seek_to(self, position_s: float, frame_id: int) -> None:
+        """Move the slider, seen or not, and wait for the picture of that place."""
+        move = """(position) => {
+            const seek = document.querySelector("#seek");
+            [seek.value, seek.step] = [position, "any"];
+            seek.value = position;
+            seek.onchange();
+        }"""
+        self.ask(move, position_s)
+        self.until(f"agora.stats().lastFrameId === {frame_id}")
+
     def acknowledged(self, frame_id: int) -> bool:
         """Whether the page has told the server that it is done with a picture."""
         return {"type": "ack", "frame_id": frame_id} in self.sent

@@ -11,7 +11,8 @@ class Tampering:
     def __init__(self, page: Page, offset: int, patch: bytes, every: int = 2) -> None:
         self.patched: list[int] = []
         self.whole: list[int] = []
-        self._offset, self._patch, self._every = offset, patch, every
+        self.patch = patch
+        self._offset, self._every = offset, every
         page.route_web_socket("**/ws/view/**", self._join)
 
     def _join(self, route: WebSocketRoute) -> None:
@@ -26,5 +27,5 @@ class Tampering:
             self.whole.append(frame_id)
             return message
         self.patched.append(frame_id)
-        end = self._offset + len(self._patch)
-        return message[: self._offset] + self._patch + message[end:]
+        end = self._offset + len(self.patch)
+        return message[: self._offset] + self.patch + message[end:]

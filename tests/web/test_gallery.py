@@ -8,20 +8,16 @@ from collections.abc import Iterator
 import cv2
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from playwright.sync_api import Browser
 
 from assets.site import load_site
-from tests.web.gallery import GALLERY, GOLDEN, VIEWS, Picture, Shot, gallery, shots, showing_site
+from tests.web.gallery import GALLERY, GOLDEN, VIEWS, Shot, gallery, shots, showing_site
+from tests.web.likeness import LEAST_LIKENESS, MOST_DIFFERENCE, Picture, difference, likeness
 from tests.web.walk import ROOT
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 NAMES = [f"{model}.{view}" for model, views in VIEWS.items() for view in views]
-MOST_DIFFERENCE = 8.0
-"""Mean, of 255, once both pictures are small and blurred: another version of the software renderer stays far below."""
-LEAST_LIKENESS = 0.85
-"""Of local structure, 1 for the same."""
 
 
 @pytest.fixture(scope="module")
@@ -36,30 +32,6 @@ def golden(name: str) -> Picture:
     picture = cv2.imread(str(GOLDEN / f"{name}.webp"), cv2.IMREAD_COLOR)
     assert picture is not None, f"there is no golden picture of {name}: make gallery"
     return np.asarray(picture, np.uint8)
-
-
-def small(picture: Picture) -> NDArray[np.float64]:
-    """Return a picture at a quarter of its size, blurred: edges that moved by a pixel are the same."""
-    quarter = cv2.resize(picture, None, fx=0.25, fy=0.25, interpolation=cv2.INTER_AREA)
-    return np.asarray(cv2.GaussianBlur(quarter, (0, 0), 1.5), np.float64)
-
-
-def difference(a: Picture, b: Picture) -> float:
-    """Return the mean difference of two pictures, 0 to 255."""
-    return float(np.abs(small(a) - small(b)).mean())
-
-
-def likeness(a: Picture, b: Picture) -> float:
-    """Return the mean structural similarity (Wang et al. 2004) of two pictures' greys."""
-
-    def mean(values: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.asarray(cv2.GaussianBlur(values, (0, 0), 3.0), np.float64)
-
-    x, y = (small(picture).mean(axis=2) for picture in (a, b))
-    mx, my = mean(x), mean(y)
-    vx, vy, cxy = mean(x * x) - mx * mx, mean(y * y) - my * my, mean(x * y) - mx * my
-    c1, c2 = (0.01 * 255) ** 2, (0.03 * 255) ** 2
-    return float(((2 * mx * my + c1) * (2 * cxy + c2) / ((mx * mx + my * my + c1) * (vx + vy + c2))).mean())
 
 
 @pytest.mark.parametrize("name", [*NAMES, *(f"{name}.evidence" for name in NAMES)])

@@ -21,7 +21,7 @@ pytestmark = pytest.mark.browser
 
 FRAME = 25
 WALL_CAM_M = np.array([[x, y, 8.0] for x, y in ((-5.0, -2.5), (1.0, -2.5), (1.0, 1.0), (-5.0, 1.0))])
-"""Corners of a wall 8 m ahead, in the camera's frame: above the ground, from left of the picture to a little right of its middle."""
+"""Corners of a wall 8 m ahead, in the camera's frame: above the ground, from left of the picture to right of its middle."""
 COVARIANCE = 160
 """Where it begins in a frame message."""
 EDGE_PX = 2

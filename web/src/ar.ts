@@ -5,10 +5,13 @@ import { Align, type Host } from "./align";
 import type { Alignment } from "./alignment";
 import { Bar } from "./bar";
 import { Care } from "./care";
+import { Choices } from "./choices";
 import { Composite } from "./composite";
+import { deedsOf } from "./deeds";
 import { canDraw, element, publishNothing } from "./dom";
 import { invertRigid, T_gltf_site, transform, type Vector3 } from "./frames";
 import { Guide } from "./guide";
+import { Hmd, worn } from "./hmd";
 import { Hud } from "./hud";
 import { project } from "./lens";
 import { Look } from "./look";
@@ -47,6 +50,12 @@ class Page {
   private readonly care = new Care();
   private readonly sharing = new Sharing((request) => this.ask(request));
   private readonly align = new Align(element("view", HTMLCanvasElement), this.host());
+  readonly choices = new Choices(
+    this.look,
+    (share) => this.setPast(share),
+    () => this.composite.redraw(),
+  );
+  private readonly hmd = this.wear();
   private link: Link | null = null;
   private readonly bar = new Bar((request) => this.ask(request));
   private connection: Connection = "connecting";
@@ -87,6 +96,7 @@ class Page {
       this.square = square;
       this.look.show(square, site.origin);
       this.composite.show(square);
+      this.choices.show(site, square);
       this.model = "shown";
       if (site.occluders !== null)
         void loadOccluders(site.occluders).then((group) => square.hideBehind(group), notHidden);
@@ -195,6 +205,8 @@ class Page {
       this.waiting = null;
       this.draw(next.message, next.bitmap, next.arrived_ms, now_ms);
     }
+    if (this.frame)
+      this.hmd?.turn(this.locked?.headingKnown ? this.locked.T_site_cam : null, fieldOf(this.frame.lens), now_ms);
     const playing = this.session?.playback?.playing ?? true;
     this.hud.show(this.frame, playing, now_ms);
     this.hud.say({
@@ -215,6 +227,7 @@ class Page {
   private draw(message: FrameMessage, bitmap: ImageBitmap, arrived_ms: number, now_ms: number): void {
     this.frame = message;
     const { pose, locked } = this;
+    this.overlays.aligning = this.align.active;
     this.overlay = this.overlays.take(message, locked);
     this.composite.laying = this.align.active ? seenThrough(this.overlay.laying) : this.overlay.laying;
     this.guide.show(message, this.overlay);
@@ -228,6 +241,7 @@ class Page {
       doubt: this.overlay.doubt,
     });
     this.look.after(began_ms, arrived_ms);
+    this.choices.tellSun(this.look.sun);
     this.shown?.close();
     this.shown = bitmap;
     document.body.classList.remove("empty");
@@ -290,14 +304,20 @@ class Page {
     return hit && [hit.x, -hit.z, hit.y];
   }
 
+  /** Be a head-mounted display's page, where the address asks for that. */
+  private wear(): Hmd | null {
+    const wearing = worn(new URLSearchParams(location.search));
+    if (wearing === null) return null;
+    this.composite.apart_m = wearing.eyes === 2 ? wearing.ipd_m : null;
+    const sayings = ["notice", "toast", "way-words"].map((id) => element(id, HTMLElement));
+    return new Hmd(wearing, () => deedsOf(this.choices, this.session, (request) => this.ask(request)), sayings);
+  }
+
   private controls(): void {
     const canvas = element("view", HTMLCanvasElement);
-    const past = element("past", HTMLInputElement);
     const fill = (): void => this.composite.resize(canvas.clientWidth, canvas.clientHeight, window.devicePixelRatio);
     new ResizeObserver(fill).observe(canvas);
     fill();
-    past.oninput = () => this.setPast(Number(past.value) / 100);
-    this.setPast(Number(past.value) / 100);
     const { classList } = document.body;
     element("hide", HTMLButtonElement).onclick = () => classList.add("clean");
     canvas.onclick = () => classList.remove("clean");
@@ -311,6 +331,11 @@ class Page {
     this.composite.past = Math.min(1, Math.max(0, share));
     this.composite.redraw();
   }
+}
+
+/** Return how wide a picture is in the display, radians, distortion aside. */
+function fieldOf({ width_px, fx_px }: FrameMessage["lens"]): number {
+  return 2 * Math.atan(width_px / (2 * fx_px));
 }
 
 function notHidden(error: unknown): void {

@@ -104,6 +104,8 @@ export class Composite {
   readonly renderer: WebGLRenderer;
   /** How much of the past is shown, 0 to 1. */
   past = 0.85;
+  /** How far the eyes are apart, metres, for a picture of each side by side; null for one picture. */
+  apart_m: number | null = null;
   /** What the model's linear colours are multiplied by, to be as bright as the picture. */
   gain: readonly [number, number, number] = [1, 1, 1];
   /** How the model is laid over the next picture. */
@@ -118,6 +120,10 @@ export class Composite {
   private lookup: Lookup | null = null;
   private shot: Shot | null = null;
   private softens = true;
+  /** How far each eye is to the right of the camera, metres. */
+  private asides_m: readonly number[] = [0];
+  /** Of the canvas, in pixels of the page. */
+  private size: readonly [number, number] = [1, 1];
   private readonly onePixel = new Uint8Array(4);
 
   constructor(canvas: HTMLCanvasElement) {
@@ -185,6 +191,7 @@ export class Composite {
 
   /** Fit the canvas to its place on the page. */
   resize(width: number, height: number, pixelRatio: number): void {
+    this.size = [width, height];
     this.renderer.setPixelRatio(Math.min(pixelRatio, 2));
     this.renderer.setSize(width, height, false);
     if (this.shot) this.draw(this.shot);
@@ -200,8 +207,19 @@ export class Composite {
       this.picture.image = shot.bitmap;
       this.picture.needsUpdate = true;
     }
+    const half_m = (this.apart_m ?? 0) / 2;
+    this.asides_m = this.apart_m === null ? [0] : [-half_m, half_m];
+    for (const eye of this.asides_m.keys()) this.drawEye(shot, eye);
+    this.renderer.setViewport(0, 0, ...this.size);
+  }
+
+  /** Draw what one eye sees, on its part of the canvas. */
+  private drawEye(shot: Shot, eye: number): void {
+    const { renderer, asides_m } = this;
+    const [width, height] = [this.size[0] / asides_m.length, this.size[1]];
     const hasModel = this.square !== null && shot.T_site_cam !== null && this.past > 0;
-    if (hasModel && this.square && shot.T_site_cam) this.drawModel(this.square, shot, shot.T_site_cam);
+    if (hasModel && this.square && shot.T_site_cam)
+      this.drawModel(this.square, shot, shot.T_site_cam, asides_m[eye] ?? 0);
     const { uniforms } = this.mesh.material;
     uniforms["hasModel"] = { value: hasModel };
     uniforms["isSoft"] = { value: hasModel && this.drawing.isSoft };
@@ -209,11 +227,13 @@ export class Composite {
     uniforms["past"] = { value: this.past };
     uniforms["quarterTurns"] = { value: shot.quarterTurns };
     if (shot.T_site_cam) this.lay(shot.T_site_cam);
-    const size = this.renderer.getDrawingBufferSize(new Vector2());
-    const [reachX, reachY] = reachOf({ ...shot.lens, quarterTurns: shot.quarterTurns }, size.x / size.y);
+    const [reachX, reachY] = reachOf({ ...shot.lens, quarterTurns: shot.quarterTurns }, width / height);
     uniforms["reach"] = { value: new Vector2(reachX, reachY) };
-    this.renderer.setRenderTarget(null);
-    this.renderer.render(this.sheet, this.flat);
+    renderer.setRenderTarget(null);
+    renderer.setViewport(eye * width, 0, width, height);
+    renderer.autoClear = eye === 0; // it clears both halves
+    renderer.render(this.sheet, this.flat);
+    renderer.autoClear = true;
   }
 
   /** Set what the picture's shader needs to know of `laying`. */
@@ -288,14 +308,15 @@ export class Composite {
     return this.drawing.cost;
   }
 
-  private drawModel(square: Square, { lens, doubt }: Shot, T_site_cam: Matrix4): void {
+  private drawModel(square: Square, { lens, doubt }: Shot, T_site_cam: Matrix4, aside_m: number): void {
     if (this.lookup)
       this.drawing.render(square, {
         lens,
         window: this.lookup.window,
         T_site_cam,
         doubt: this.softens ? doubt : null,
-        aside_m: 0,
+        aside_m,
+        eyes: this.asides_m.length,
       });
   }
 

@@ -35,6 +35,8 @@ export interface Sight {
   readonly doubt: Doubted | null;
   /** How far the eye is to the right of the camera, metres. */
   readonly aside_m: number;
+  /** Between how many the canvas is divided. */
+  readonly eyes: number;
 }
 
 export class Drawing {
@@ -67,7 +69,7 @@ export class Drawing {
   render(square: Square, sight: Sight): void {
     const { renderer, camera, target } = this;
     const { lens, window } = sight;
-    this.fit(lens, window);
+    this.fit(sight);
     this.aim(sight);
     if (square.update(this.eye.setFromMatrixPosition(camera.matrixWorld))) renderer.shadowMap.needsUpdate = true;
     if (this.points)
@@ -105,9 +107,9 @@ export class Drawing {
     square.scene.add(this.points);
   }
 
-  private fit(lens: Lens, window: Window): void {
+  private fit({ lens, window, eyes }: Sight): void {
     const size = this.renderer.getDrawingBufferSize(new Vector2());
-    const shown = Math.max(0.5, Math.min(size.x / lens.width_px, size.y / lens.height_px));
+    const shown = Math.max(0.5, Math.min(size.x / eyes / lens.width_px, size.y / lens.height_px));
     const [width, height] = drawingSize(lens, window, shown * this.fineness, LARGEST_PX);
     if (this.target.width !== width || this.target.height !== height) this.target.setSize(width, height);
   }

@@ -2,7 +2,7 @@
 
 import { Card } from "./card";
 import { canDraw, element, publishNothing, tell } from "./dom";
-import { EVIDENCE, EVIDENCE_COLOURS, EVIDENCE_WORDS } from "./evidence";
+import { fillLegend } from "./legend";
 import { Square } from "./model";
 import { clockText } from "./playback";
 import { parseSessions } from "./protocol";
@@ -112,16 +112,7 @@ class Home {
   private offerEvidence(): void {
     const box = element("evidence", HTMLInputElement);
     const legend = element("legend", HTMLElement);
-    legend.replaceChildren(
-      ...EVIDENCE.map((evidence) => {
-        const row = document.createElement("li");
-        row.dataset["evidence"] = evidence;
-        row.textContent = this.site.evidence[evidence] ?? EVIDENCE_WORDS[evidence];
-        return row;
-      }),
-    );
-    for (const evidence of EVIDENCE)
-      document.documentElement.style.setProperty(`--${evidence}`, EVIDENCE_COLOURS[evidence]);
+    fillLegend(legend, this.site);
     const apply = (): void => {
       this.evidence = box.checked;
       legend.hidden = !box.checked;

@@ -1,0 +1,57 @@
+"""The AR page looks as it looked when somebody last looked at it: three hours of the sun, and both head-mounted displays.
+
+After a change that is meant to be seen: `python -m tests.web.ar_gallery`, and look at tests/golden/ar.
+"""
+
+from collections.abc import Iterator
+
+import cv2
+import numpy as np
+import pytest
+from playwright.sync_api import Browser
+
+from tests.web.ar_gallery import GOLDEN, PAGES, Shot, shots, showing
+from tests.web.likeness import LEAST_LIKENESS, MOST_DIFFERENCE, Picture, difference, likeness
+
+pytestmark = pytest.mark.browser
+
+SEEN = 2.0
+"""Of 255: another hour of the sun changes a picture by more than this in the mean."""
+
+
+@pytest.fixture(scope="module")
+def drawn(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Shot]]:
+    """Every page as this machine draws it now."""
+    with showing(tmp_path_factory.mktemp("ar")) as served:
+        yield {shot.name: shot for shot in shots(browser, served.url)}
+
+
+def golden(name: str) -> Picture:
+    """Return the picture that is kept."""
+    picture = cv2.imread(str(GOLDEN / f"{name}.webp"), cv2.IMREAD_COLOR)
+    assert picture is not None, f"there is no golden picture of {name}: python -m tests.web.ar_gallery"
+    return np.asarray(picture, np.uint8)
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_the_page_looks_as_it_did(drawn: dict[str, Shot], name: str) -> None:
+    now, before = drawn[name].picture, golden(name)
+    assert now.shape == before.shape
+    assert difference(now, before) < MOST_DIFFERENCE
+    assert likeness(now, before) > LEAST_LIKENESS
+
+
+def test_every_hour_has_its_own_light() -> None:
+    hours = [golden(name) for name in PAGES if name.startswith("sun.")]
+    assert len(hours) == 3
+    for i, hour in enumerate(hours):
+        for other in hours[i + 1 :]:
+            assert difference(hour, other) > SEEN
+
+
+def test_both_eyes_see_the_same_picture_but_for_their_distance() -> None:
+    both = golden("hmd.eyes")
+    left, right = both[:, :320], both[:, 320:]
+    assert likeness(np.ascontiguousarray(left), np.ascontiguousarray(right)) > LEAST_LIKENESS
+    assert difference(np.ascontiguousarray(left), np.ascontiguousarray(right)) < MOST_DIFFERENCE
+    assert likeness(both, golden("hmd")) < LEAST_LIKENESS
