@@ -24,7 +24,7 @@ from server.upkeep import upkeep
 
 LOOPBACK_HOSTS = ("127.0.0.1", "localhost", "::1")
 #: FastAPI would export traces where its environment variables say so; nothing but loopback is ever contacted.
-_NO_TELEMETRY: Final[TelemetryConfig] = {
+NO_TELEMETRY: Final[TelemetryConfig] = {
     "tracing": False,
     "metrics": False,
     "logs": False,
@@ -70,7 +70,7 @@ def create_app(
         title="Agora",
         docs_url=None,
         redoc_url=None,
-        telemetry=_NO_TELEMETRY,
+        telemetry=NO_TELEMETRY,
         lifespan=lambda app: upkeep(store, replays),
     )
     app.state.sessions, app.state.access = sessions, access

@@ -32,6 +32,17 @@ class Configuration(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     data: Annotated[str, Meta(min_length=1, description="Where uploaded walks are kept, and what is secret.")] = (
         "~/.local/share/agora"
     )
+    tls_cert: Annotated[
+        str,
+        Meta(description="The server's certificate, PEM, with those that lead to the authority's; empty for no TLS."),
+    ] = ""
+    tls_key: Annotated[str, Meta(description="Its key, PEM.")] = ""
+    tls_local: Annotated[
+        bool,
+        Meta(
+            description="TLS by an authority of this server's own, which devices install from a page on the next port."
+        ),
+    ] = False
     log_format: Annotated[
         Literal["text", "json"], Meta(description="Of what the program says of itself: text, or a line of JSON each.")
     ] = "text"
@@ -126,6 +137,8 @@ def _file_fields(path: Path | None, environment: Mapping[str, str]) -> dict[str,
 
 def _from_text(name: str, text: str) -> Any:
     default = getattr(Configuration(), name)
+    if isinstance(default, bool):
+        return {"true": True, "false": False}.get(text, text)
     if isinstance(default, list):
         return [part.strip() for part in text.split(",") if part.strip()]
     if isinstance(default, int | float):

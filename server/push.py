@@ -5,6 +5,7 @@ Two threads: `rig-link` connects and sends, `rig-control` reads requests and ans
 
 import logging
 import socket
+import ssl
 import struct
 from collections.abc import Callable
 from contextlib import suppress
@@ -125,8 +126,19 @@ class RigLink:
     from it becomes the reply's error.
     """
 
-    def __init__(self, url: str, token: str, on_control: Callable[[ControlRequest], ControlReply]) -> None:
-        """Start connecting to `url` (`ws://HOST:PORT/ws/rig/SESSION`)."""
+    def __init__(
+        self, url: str, token: str, on_control: Callable[[ControlRequest], ControlReply], trust: str | None = None
+    ) -> None:
+        """Start connecting.
+
+        Args:
+            url: `ws://HOST:PORT/ws/rig/SESSION`, or `wss://…`.
+            token: Of that session.
+            on_control: Answers viewers' requests.
+            trust: The one certificate, PEM, that the server must show whatever its name: a rig beside its own server calls that by
+                an address that no certificate is for. None for those of the machine's authorities.
+        """
+        self._context = None if trust is None else _pinned(trust)
         self._url = url
         self._token = token
         self._on_control = on_control
@@ -194,6 +206,7 @@ class RigLink:
         connection = connect(
             self._url,
             additional_headers={"Authorization": f"Bearer {self._token}"},
+            ssl=self._context,
             subprotocols=[Subprotocol(SUBPROTOCOL)],
             compression=None,  # pictures are compressed already
             proxy=None,
@@ -273,3 +286,12 @@ class RigLink:
                 f"The server refused {self._url} ({status}): check its token, its session's name and its version."
             )
             _logger.error("%s", self.refused)
+
+
+def _pinned(certificate: str) -> ssl.SSLContext:
+    """Return a context that takes one certificate, and that one only."""
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+    context.check_hostname = False
+    context.verify_flags |= ssl.VERIFY_X509_PARTIAL_CHAIN
+    context.load_verify_locations(cadata=certificate)
+    return context

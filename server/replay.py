@@ -116,9 +116,9 @@ class Replay:
             self._console.clear()
         return pipeline
 
-    def start(self, rig_url: str, token: str) -> None:
-        """Connect to the server and play."""
-        self._link = RigLink(rig_url, token, self._control)
+    def start(self, rig_url: str, token: str, trust: str | None = None) -> None:
+        """Connect to the server, see `RigLink`, and play."""
+        self._link = RigLink(rig_url, token, self._control, trust)
         self._presenter = Presenter(self._link, self._rig, self._console)
         self._link.send_state(self._description())
         self.player.start()

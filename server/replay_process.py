@@ -28,6 +28,8 @@ class ReplayJob(msgspec.Struct, frozen=True, kw_only=True):
     looping: bool
     url: str
     token: str
+    trust: str | None = None
+    """The certificate, PEM, that the server must show."""
 
 
 class Answer(msgspec.Struct, frozen=True, omit_defaults=True):
@@ -54,7 +56,7 @@ def _play(job: ReplayJob) -> None:
         eye_height_m=site.eye_height_m,
     )
     try:
-        replay.start(job.url, job.token)
+        replay.start(job.url, job.token, job.trust)
         _answer(Answer())
         stop = Event()
         Thread(target=_wait_for_the_end, args=(stop,), name="stdin", daemon=True).start()

@@ -44,6 +44,7 @@ class Replays:
         most: int,
         idle_s: float,
         memory_bytes: int,
+        trust: str | None = None,
     ) -> None:
         """Nothing runs yet.
 
@@ -55,9 +56,11 @@ class Replays:
             most: Replays at a time.
             idle_s: How long one goes on without a viewer.
             memory_bytes: Of each process.
+            trust: The certificate that this server shows, where it has one.
         """
         self._sessions, self._store, self._site, self._link = sessions, store, site, link
         self._most, self._idle_ns, self._memory_bytes = most, int(idle_s * 1e9), memory_bytes
+        self._trust = trust
         self._running: dict[str, _Running] = {}
         self._starting = 0
 
@@ -85,6 +88,7 @@ class Replays:
             looping=looping,
             url=url,
             token=token,
+            trust=self._trust,
         )
         self._starting += 1
         try:

@@ -26,6 +26,11 @@ def serve(
         Path | None, typer.Option("--site", help="The folder of the site.", show_default="the State Agora")
     ] = None,
     data: Annotated[Path | None, typer.Option(help="Where uploaded walks are kept.", metavar="DIR")] = None,
+    tls_cert: Annotated[Path | None, typer.Option(help="The server's certificate, PEM.", metavar="FILE")] = None,
+    tls_key: Annotated[Path | None, typer.Option(help="Its key, PEM.", metavar="FILE")] = None,
+    tls_local: Annotated[
+        bool | None, typer.Option("--tls-local", help="TLS by an authority of its own, for a network without others.")
+    ] = None,
     log_format: Annotated[Literal["text", "json"] | None, typer.Option(help="Of the journal.")] = None,
     print_config: Annotated[
         bool, typer.Option("--print-config", help="Print the configuration as a file, explained, and end.")
@@ -43,6 +48,9 @@ def serve(
         "port": port,
         "site": None if site is None else str(site),
         "data": None if data is None else str(data),
+        "tls_cert": None if tls_cert is None else str(tls_cert),
+        "tls_key": None if tls_key is None else str(tls_key),
+        "tls_local": tls_local,
         "log_format": log_format,
     }
     configuration = read_configuration(config, os.environ, options)
@@ -61,7 +69,9 @@ def serve(
         signal(number, lambda *_: stop.set())
     with Serving(configuration, place, web) as serving:
         out.print(f"Agora is at {serving.url}", soft_wrap=True)
-        out.print(f"Its operator enters, once and within ten minutes, by {serving.first_url()}", soft_wrap=True)
+        out.print(f"Its operator enters, once and within ten minutes, by {serving.first_url}", soft_wrap=True)
+        for line in serving.how_to_trust:
+            out.print(line, soft_wrap=True)
         out.print("Everybody else by a token: agora token viewer, agora token rig --session NAME", soft_wrap=True)
         sys.stdout.flush()
         stop.wait()

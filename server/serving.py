@@ -1,6 +1,8 @@
 """A server for many rigs and many viewers, without a walk of its own: what `agora serve` runs."""
 
 import logging
+from contextlib import ExitStack
+from datetime import UTC, datetime
 from pathlib import Path
 from time import monotonic_ns, time_ns
 from types import TracebackType
@@ -10,13 +12,18 @@ from assets.site import Site
 from server.access import Access
 from server.app import create_app
 from server.configuration import Configuration
+from server.errors import ServerError
 from server.grants import Grant
+from server.installing import Installer
+from server.local_authority import LocalAuthority, own_names
 from server.log_store import LogStore
 from server.replays import Replays
 from server.secret_file import secret_of
 from server.sessions import Sessions
 from server.site_facts import site_facts
+from server.tls import Tls
 from server.web_server import WebServer
+from tracker.errors import InputError
 
 _logger = logging.getLogger(__name__)
 
@@ -34,9 +41,13 @@ class Serving:
 
         Raises:
             PortInUse, AddressUnavailable: The server cannot listen there.
-            InputError: The secret cannot be kept.
+            InputError: The secret cannot be kept, or TLS not be had as it is configured.
         """
         models = site.folder / "built"
+        self._stack = ExitStack()
+        self._authority = _authority_of(configuration)
+        tls = _tls_of(configuration) if self._authority is None else self._authority.tls
+        hosts = configuration.hosts if self._authority is None else configuration.hosts | own_names()
         # on loopback too: a proxy may stand there, and behind it everybody
         self._access = Access.with_secret(secret_of(configuration.data_folder))
         sessions = Sessions(monotonic_ns, configuration.max_sessions, configuration.max_viewers)
@@ -55,19 +66,31 @@ class Serving:
             most=configuration.max_replays,
             idle_s=configuration.replay_idle_s,
             memory_bytes=configuration.replay_memory_mb * _MB,
+            trust=None if tls is None else tls.own_pem(),
         )
         app = create_app(
             web_folder=web,
             models_folder=models,
             site=site_facts(site, models),
             access=self._access,
-            allowed_hosts=configuration.hosts,
+            allowed_hosts=hosts,
             any_address=not configuration.on_loopback,
             sessions=sessions,
             store=store,
             replays=replays,
         )
-        self._server = WebServer(app, configuration.host, configuration.port)
+        self._server = WebServer(app, configuration.host, configuration.port, tls)
+        self._installer = None if self._authority is None else self._beside(self._authority, configuration, hosts)
+        t_end_s = int(self._access.signer.now_s()) + _FIRST_STAY_S
+        self.first_url = f"{self.url}enter?code={self._access.codes.new(Grant('admin', None, t_end_s))}"
+        """Makes whoever opens it first, within ten minutes, an administrator for twelve hours."""
+
+    def _beside(self, authority: LocalAuthority, configuration: Configuration, hosts: frozenset[str]) -> Installer:
+        try:
+            return Installer(authority, configuration.host, configuration.port, hosts)
+        except ServerError:
+            self._server.close()
+            raise
 
     @property
     def url(self) -> str:
@@ -79,13 +102,21 @@ class Serving:
         signer = self._access.signer
         return self._server.rig_url(session), signer.issue("rig", int(signer.now_s()) + _YEAR_S, session)
 
-    def first_url(self) -> str:
-        """Return an address that makes whoever opens it first, within ten minutes, an administrator for twelve hours."""
-        t_end_s = int(self._access.signer.now_s()) + _FIRST_STAY_S
-        return f"{self.url}enter?code={self._access.codes.new(Grant('admin', None, t_end_s))}"
+    @property
+    def how_to_trust(self) -> list[str]:
+        """What an operator should know of this server's authority; empty where there is none."""
+        if self._authority is None or self._installer is None:
+            return []
+        return [
+            f"Phones and tablets load its certificate from {self._installer.url}",
+            f"The certificate's SHA-256 fingerprint is {self._authority.fingerprint}",
+            f"Rigs take its file: SSL_CERT_FILE={self._authority.path} agora track --to wss://HOST",
+        ]
 
     def __enter__(self) -> Self:
-        self._server.__enter__()
+        self._stack.enter_context(self._server)
+        if self._installer is not None:
+            self._stack.enter_context(self._installer.server)
         _logger.info("serving", extra={"url": self.url})
         return self
 
@@ -93,5 +124,23 @@ class Serving:
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
         _logger.info("stopping")
-        self._server.close()
+        self._stack.close()
         _logger.info("stopped")
+
+
+def _authority_of(configuration: Configuration) -> LocalAuthority | None:
+    if not configuration.tls_local:
+        return None
+    if configuration.tls_cert or configuration.tls_key:
+        raise InputError("A server has a given certificate or a local authority's, not both: leave --tls-local out.")
+    return LocalAuthority(configuration.data_folder / "tls", configuration.hosts | own_names(), datetime.now(UTC))
+
+
+def _tls_of(configuration: Configuration) -> Tls | None:
+    if bool(configuration.tls_cert) != bool(configuration.tls_key):
+        raise InputError("A certificate needs its key, and a key its certificate: give --tls-cert and --tls-key.")
+    if not configuration.tls_cert:
+        return None
+    tls = Tls(Path(configuration.tls_cert).expanduser(), Path(configuration.tls_key).expanduser())
+    tls.check()
+    return tls

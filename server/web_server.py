@@ -15,6 +15,7 @@ from server.connections import protocols
 from server.errors import AddressUnavailable, PortInUse, ServerError
 from server.limits import Limits, Visitors
 from server.sessions import Sessions
+from server.tls import Tls
 from server.wire import MAX_FRAME_BYTES
 
 _START_S: Final = 20.0
@@ -30,7 +31,7 @@ class WebServer:
     The port is bound when the object is made, so `port` and `url` are known before anything runs.
     """
 
-    def __init__(self, app: FastAPI, host: str = "127.0.0.1", port: int = 0) -> None:
+    def __init__(self, app: FastAPI, host: str = "127.0.0.1", port: int = 0, tls: Tls | None = None) -> None:
         """Bind.
 
         Raises:
@@ -39,7 +40,7 @@ class WebServer:
         """
         self.app = app
         self._socket = _bind(host, port)
-        self._host = host
+        self._host, self._secure = host, "" if tls is None else "s"
         self.port: int = self._socket.getsockname()[1]
         config = uvicorn.Config(
             app,
@@ -52,6 +53,8 @@ class WebServer:
             log_level="warning",
             server_header=False,
             timeout_graceful_shutdown=_GOODBYE_S,
+            ssl_certfile=None if tls is None else tls.certificate,
+            ssl_keyfile=None if tls is None else tls.key,
         )
         self._server = _Server(config, getattr(app.state, "sessions", None))
         self._thread = Thread(target=self._server.run, args=([self._socket],), name="web-server", daemon=True)
@@ -59,11 +62,11 @@ class WebServer:
     @property
     def url(self) -> str:
         """The address for a browser on this machine, with a slash at its end."""
-        return f"http://{self._netloc}/"
+        return f"http{self._secure}://{self._netloc}/"
 
     def rig_url(self, session: str) -> str:
         """Return the address for `RigLink`."""
-        return f"ws://{self._netloc}/ws/rig/{session}"
+        return f"ws{self._secure}://{self._netloc}/ws/rig/{session}"
 
     @property
     def _netloc(self) -> str:

@@ -15,6 +15,7 @@ from server.access import Access
 from server.app import create_app
 from server.grants import LOCAL
 from server.showing import Showing
+from server.tls import Tls
 from server.tokens import Issued
 from server.web_server import WebServer
 
@@ -23,7 +24,7 @@ HELD_S = 5.0
 
 
 @contextmanager
-def serving(folder: Path, **options: Any) -> Iterator[WebServer]:
+def serving(folder: Path, tls: Tls | None = None, **options: Any) -> Iterator[WebServer]:
     """Run a server with small pages and a model in `folder`."""
     web, models = folder / "dist", folder / "models"
     (web / "assets").mkdir(parents=True, exist_ok=True)
@@ -33,7 +34,7 @@ def serving(folder: Path, **options: Any) -> Iterator[WebServer]:
     (web / "assets" / "ar.js").write_text("0")
     (models / "today.glb").write_bytes(b"glTF")
     app = create_app(web_folder=web, models_folder=models, site={"name": "Square"}, **{"access": ACCESS, **options})
-    with WebServer(app) as server:
+    with WebServer(app, tls=tls) as server:
         yield server
 
 
