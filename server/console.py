@@ -47,7 +47,7 @@ class ColouredPath:
 
     def __init__(self) -> None:
         self.pieces: list[list[tuple[Matrix, tuple[int, int, int]]]] = [[]]
-        """Each segment is (2, 3) site metres and its colour."""
+        """Each segment is (2, 3) site metres and its colour; pieces that are no longer drawn are empty."""
         self._last: Matrix | None = None
 
     def add(self, p_site_m: Matrix, motion_model: str) -> bool:
@@ -61,6 +61,8 @@ class ColouredPath:
             return False
         if len(self.pieces[-1]) >= _PIECE:
             self.pieces.append([])
+            if len(self.pieces) > _PIECES:
+                self.pieces[-_PIECES - 1] = []  # no longer drawn; a day's walk has half a million segments
         colour = MOTION_COLOURS.get(motion_model, _NO_MODEL_COLOUR)
         self.pieces[-1].append((np.stack([last, self._last]), colour))
         return True

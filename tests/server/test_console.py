@@ -29,6 +29,16 @@ def test_a_long_path_grows_by_short_pieces() -> None:
     assert [len(piece) for piece in path.pieces] == [100, 100, 50]
 
 
+def test_what_is_no_longer_drawn_of_a_path_is_not_kept() -> None:
+    """A day's walk would be a hundred megabytes of it."""
+    path = ColouredPath()
+    for i in range(30_000):
+        path.add(np.array([0.2 * i, 0.0, 0.0]), "P0R0")
+    assert len(path.pieces) == 300
+    assert sum(len(piece) for piece in path.pieces) <= 200 * 100
+    assert len(path.pieces[-200]) == 100
+
+
 def test_the_console_starts_draws_and_leaves_no_thread() -> None:
     before = set(threading.enumerate())
     frame = example_frame()
