@@ -1,7 +1,7 @@
 /** What is laid over a picture: style, and what holds it back, together. */
 
 import { Edges, type Triangle } from "../../web/src/edges";
-import { Overlays } from "../../web/src/overlay";
+import { Overlays, seenThrough } from "../../web/src/overlay";
 import type { CameraPose, FrameMessage } from "../../web/src/wire";
 
 const GROUND: Triangle[] = [
@@ -67,4 +67,18 @@ test("off the ground that is known, the eyes are as high as the site says", () =
   const made = overlays();
   made.eyeHeight_m = 1.7;
   expect(made.take(message(), pose(300, 0.1)).laying.eye_m).toBe(1.7);
+});
+
+test("who aligns the square sees it however far off it is, unless nobody knows where it is", () => {
+  const made = overlays();
+  made.aligning = true;
+  expect(made.take(message(), pose(0, 50)).style).toBe("ghost");
+  expect(made.take(message(), pose(0, 0.1, { t_ns: 1e8, headingKnown: false })).style).toBe("guide");
+});
+
+test("through the square that is being aligned, what stands today is seen", () => {
+  const { share, outline } = seenThrough({ share: 1, outline: 0, clear_m: 3, eye_m: 1.6 });
+  expect(share).toBeLessThan(0.5);
+  expect(outline).toBeGreaterThan(0.5);
+  expect(seenThrough({ share: 0, outline: 0, clear_m: 3, eye_m: 1.6 }).outline).toBe(0);
 });

@@ -144,7 +144,7 @@ class PreciseEstimator:
             self._begin()  # lost: better to have no pose than that one
 
     def _take(self, measurement: Timed, following: ImuSample | None) -> None:
-        """Let the engine take a measurement; where that corrects it, what is shown goes on from where it was."""
+        """Let the engine take a measurement; where a sensor corrects it, what is shown goes on from where it was."""
         engine = self._engine
         if engine.hypotheses is None:
             engine.take(measurement, following)
@@ -152,7 +152,8 @@ class PreciseEstimator:
         before, corrections, had_place = engine.best.nav, engine.hypotheses.corrections, engine.fix_ns is not None
         engine.take(measurement, following)
         after = engine.best.nav
-        if engine.fix_ns is not None and not had_place:
+        is_said = isinstance(measurement, Sighting | Standpoint)  # who has asked for a correction wants to see it
+        if is_said or (engine.fix_ns is not None and not had_place):
             self._blend = self._new_blend()
         elif engine.hypotheses.corrections != corrections:
             self._blend.corrected(self._free.carry(before, after.t_ns), after)

@@ -41,6 +41,8 @@ export class Overlays {
   /** Of the site; none are known until they are loaded. */
   edges = new Edges([], []);
   eyeHeight_m = 1.65;
+  /** Whether a visitor is putting the square right: who does that must see it, however far off it is. */
+  aligning = false;
   private readonly certainty = new Certainty();
   private readonly safety = new Safety();
 
@@ -49,7 +51,8 @@ export class Overlays {
     if (message.soughtJustBefore) this.certainty.reset();
     if (pose === null) return NOTHING;
     const doubt = doubtOf(pose);
-    const style = this.certainty.take(doubt, pose.t_ns);
+    const sure = this.certainty.take(doubt, pose.t_ns);
+    const style = sure === "guide" && this.aligning && pose.headingKnown ? "ghost" : sure;
     const [e_m = 0, n_m = 0, u_m = 0] = [3, 7, 11].map((index) => pose.T_site_cam[index]);
     const edge_m = this.edges.distance(e_m, n_m);
     const { clear_m, share, nearEdge } = this.safety.take(pose.t_ns, pose.v_site_m_s, edge_m, doubt.place_m);
