@@ -2,20 +2,27 @@
 
 import json
 import shlex
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from datetime import date
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
+from rich.status import Status
 
+from assets.site import Site
 from server.live_commands import Camera, Gps, Imu, RecordFolder, RigPlace
 from server.options import SITE, WEB, Browser, Port, SiteFolder, site_with
 
 if TYPE_CHECKING:
+    from server.doctor.facts import FoundDevices, SensorFacts
+    from server.doctor.verdict import Verdict
     from server.rig_sources import RigSources
+    from tracker.rig_file import RigFile
     from tracker.sources.source import Source
 
 out = Console(highlight=False)
@@ -40,52 +47,72 @@ def doctor(
 ) -> None:
     """Look at all that `agora walk` with the same options needs: each is well, or what to do is said. Exit code 0 or 1."""
     # imported here, so that `agora rules` need not wait for a web server
-    from server.doctor.listening import Wanted, listen
-    from server.doctor.looking import found_devices, machine_facts, rig_file_facts
-    from server.doctor.machine_verdicts import machine_verdicts
-    from server.doctor.page import as_json as json_of
-    from server.doctor.page import page
-    from server.doctor.rig_verdicts import calibration_verdicts, found_verdicts
-    from server.doctor.sensor_verdicts import TITLES, sensor_verdicts
+    from server.doctor import page
     from server.doctor.verdict import all_is_well
-    from server.rig_sources import RigSources
-    from tracker.rig_file import RigFile
 
     asked = {"gps": gps, "imu": imu, "camera": camera}
-    calibration = rig_file_facts(rig)
-    makers = RigSources(calibration.rig_file or RigFile())
-    asked_for = {sensor: spec for sensor, spec in asked.items() if spec != "none"}
-    titles = " and ".join(TITLES[sensor] for sensor in asked_for)
-    place = site_with(site, None)
-    with err.status("looking …") if err.is_terminal else nullcontext() as status:
-        with ThreadPoolExecutor(1) as beside:
-            found_later = beside.submit(found_devices)
-            machine = machine_facts(place, WEB, port=port, record=record, browser=browser)
-            found = found_later.result()
-        # nothing else runs now: pauses of a sensor are then its own
-        wanted = [
-            Wanted(
-                sensor,
-                spec,
-                partial(_source, makers, sensor, spec),
-                spec.startswith("phidget") and found.has_phidget(_PHIDGETS[sensor]),
-            )
-            for sensor, spec in asked_for.items()
-        ]
-        sensors = listen(
-            wanted, seconds, lambda s: None if status is None else status.update(f"listening to {titles}, {s:.0f} s")
-        )
-    verdicts = [verdict for facts in sensors for verdict in sensor_verdicts(facts, found, calibration.rig_file)]
-    verdicts += calibration_verdicts(calibration, sensors, date.today())
-    verdicts += machine_verdicts(machine, sensors)
-    verdicts += found_verdicts(found, asked.values())
+    verdicts = _verdicts(asked, rig, seconds, site_with(site, None), port=port, record=record, browser=browser)
     if as_json:
-        out.print_json(json.dumps(json_of(verdicts, asked)))
+        out.print_json(json.dumps(page.as_json(verdicts, asked)))
     else:
         options = {**asked, **({} if rig is None else {"rig": rig}), **({} if record is None else {"record": record})}
         words = [word for name, value in options.items() for word in (f"--{name}", str(value))]
-        out.print(page(verdicts, shlex.join(["agora", "walk", *words])))
+        out.print(page.page(verdicts, shlex.join(["agora", "walk", *words])))
     raise typer.Exit(0 if all_is_well(verdicts) else 1)
+
+
+def _verdicts(
+    asked: Mapping[str, str],
+    rig: Path | None,
+    seconds: float,
+    site: Site,
+    *,
+    port: int,
+    record: Path | None,
+    browser: bool,
+) -> list["Verdict"]:
+    """Look at everything, then judge it."""
+    from server.doctor.looking import found_devices, machine_facts, rig_file_facts
+    from server.doctor.machine_verdicts import machine_verdicts
+    from server.doctor.rig_verdicts import calibration_verdicts, found_verdicts
+    from server.doctor.sensor_verdicts import sensor_verdicts
+
+    calibration = rig_file_facts(rig)
+    with err.status("looking …") if err.is_terminal else nullcontext() as status:
+        with ThreadPoolExecutor(1) as beside:
+            found_later = beside.submit(found_devices)
+            machine = machine_facts(site, WEB, port=port, record=record, browser=browser)
+            found = found_later.result()
+        # nothing else runs now: pauses of a sensor are then its own
+        sensors = _listen(asked, calibration.rig_file, found, seconds, status)
+    return [
+        *(verdict for facts in sensors for verdict in sensor_verdicts(facts, found, calibration.rig_file)),
+        *calibration_verdicts(calibration, sensors, date.today()),
+        *machine_verdicts(machine, sensors),
+        *found_verdicts(found, asked.values()),
+    ]
+
+
+def _listen(
+    asked: Mapping[str, str], rig_file: "RigFile | None", found: "FoundDevices", seconds: float, status: Status | None
+) -> list["SensorFacts"]:
+    from server.doctor.listening import Wanted, listen
+    from server.doctor.sensor_verdicts import TITLES
+    from server.rig_sources import RigSources
+    from tracker.rig_file import RigFile
+
+    makers, wanted = RigSources(rig_file or RigFile()), []
+    for sensor, spec in asked.items():
+        if spec != "none":
+            is_there = spec.startswith("phidget") and found.has_phidget(_PHIDGETS[sensor])
+            wanted.append(Wanted(sensor, spec, partial(_source, makers, sensor, spec), is_there))
+    titles = " and ".join(TITLES[each.sensor] for each in wanted)
+
+    def progress(so_far_s: float) -> None:
+        if status is not None:
+            status.update(f"listening to {titles}, {so_far_s:.0f} s")
+
+    return listen(wanted, seconds, progress)
 
 
 def _source(makers: "RigSources", sensor: str, spec: str) -> "Source":
