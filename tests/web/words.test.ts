@@ -26,6 +26,8 @@ const WELL: Situation = {
   health: {},
   asked: null,
   model: "shown",
+  drawingLost: false,
+  garbled: false,
 };
 const ESTIMATORS = ["camera-gps-imu/famm", "camera-gps-imu/precise"] as const;
 const MODELS = [0, 1, 2].flatMap((i) => [0, 1, 2].map((j) => `P${i}R${j}`));
@@ -37,12 +39,14 @@ test("when all is well nothing is said, and a notice of the server's is passed o
 
 /** From the most pressing to the least: each must be said even where all below it are true as well. */
 const TROUBLES: readonly (readonly [Partial<Situation>, RegExp])[] = [
+  [{ drawingLost: true }, /^The browser has stopped drawing/],
   [{ connection: "refused" }, /may not watch/],
   [{ connection: "other version" }, /load it anew/],
   [{ connection: "no session" }, /^Nobody is walking/],
   [{ connection: "lost" }, /connection is lost/],
   [{ connection: "connecting" }, /^Connecting/],
   [{ sincePicture_ms: null }, /No pictures/],
+  [{ garbled: true }, /cannot be read/],
   [{ health: { gps: { trouble: true, sentence: "The GPS receiver is gone." } } }, /receiver is gone/],
   [{ model: "failed" }, /model of the square could not/],
   [{ hasPose: false }, /Finding out where you are/],

@@ -6,6 +6,7 @@ import type { Alignment } from "./alignment";
 import { Bar } from "./bar";
 import { Care } from "./care";
 import { Choices } from "./choices";
+import { clockOff, clockWords } from "./clock";
 import { Composite } from "./composite";
 import { deedsOf } from "./deeds";
 import { canDraw, element, publishNothing } from "./dom";
@@ -13,6 +14,7 @@ import { invertRigid, T_gltf_site, transform, type Vector3 } from "./frames";
 import { Guide } from "./guide";
 import { Hmd, worn } from "./hmd";
 import { Hud } from "./hud";
+import { watchInterruptions } from "./interruptions";
 import { project } from "./lens";
 import { Look } from "./look";
 import { SiteMap } from "./map";
@@ -32,6 +34,12 @@ import { type Connection, newsOf, type Situation } from "./words";
 /** The real ground is there already: the model's is only a hint of its paving. */
 const GROUND_SHARE = 0.25;
 const LOOK_AGAIN_MS = 2000;
+/** Before a model that did not come is asked for again: at first, and at most. */
+const MODEL_WAIT_MS = [3000, 60_000] as const;
+/** A message that cannot be read is told of for so long. */
+const GARBLED_FOR_MS = 4000;
+/** Whatever is as long may have been a picture. */
+const LONG_MESSAGE_BYTES = 384;
 
 class Page {
   readonly composite = new Composite(element("view", HTMLCanvasElement));
@@ -65,6 +73,9 @@ class Page {
   private shown: ImageBitmap | null = null;
   private lastPicture_ms: number | null = null;
   private model: Situation["model"] = "loading";
+  private modelWait_ms: number = MODEL_WAIT_MS[0];
+  private drawingLost = false;
+  private garbled_ms = Number.NEGATIVE_INFINITY;
   private readonly asked = askedName();
   private requests = 0;
   private firstFrame: () => void = () => undefined;
@@ -85,7 +96,9 @@ class Page {
 
   private async loadModel(): Promise<void> {
     try {
-      const site = parseSite(await (await fetch("/api/site")).json(), navigator.languages);
+      const answer = await fetch("/api/site");
+      this.setClock(answer.headers.get("date"));
+      const site = parseSite(await answer.json(), navigator.languages);
       element("credit", HTMLElement).textContent = site.attribution;
       void this.learn(site);
       const levels = site.models["roman"];
@@ -103,6 +116,8 @@ class Page {
     } catch (error) {
       this.model = "failed";
       console.warn("the model could not be loaded", error);
+      window.setTimeout(() => void this.loadModel(), this.modelWait_ms);
+      this.modelWait_ms = Math.min(2 * this.modelWait_ms, MODEL_WAIT_MS[1]);
     }
   }
 
@@ -137,7 +152,7 @@ class Page {
       },
       text: (text) => this.text(text),
       binary: (bytes) => {
-        if (magicOf(bytes) !== "AGF1") return;
+        if (magicOf(bytes) !== "AGF1") return this.garbled(bytes);
         const older = this.newest;
         this.newest = { bytes, arrived_ms: performance.now() };
         if (older) this.acknowledgeUnread(older.bytes);
@@ -146,8 +161,23 @@ class Page {
     });
   }
 
+  /** Leave out what cannot be read; the server must not wait for it, if it was a picture. */
+  private garbled(bytes: ArrayBuffer): void {
+    if (bytes.byteLength <= LONG_MESSAGE_BYTES) return;
+    this.garbled_ms = performance.now();
+    this.acknowledgeUnread(bytes);
+  }
+
   private text(text: string): void {
-    const message = parseState(text);
+    try {
+      this.take(parseState(text));
+    } catch (error) {
+      this.garbled_ms = performance.now();
+      console.warn("a message was left out", error);
+    }
+  }
+
+  private take(message: ReturnType<typeof parseState>): void {
     if (message?.type === "session") {
       const news = this.session && newsOf(this.session.health, message.session.health);
       if (news) this.hud.announce(news);
@@ -180,6 +210,7 @@ class Page {
         // a picture that does not decode is as good as drawn: else the server would wait for it
         if (error instanceof WireError && error.frameId !== null) this.acknowledge(error.frameId);
         else this.acknowledgeUnread(bytes);
+        this.garbled_ms = performance.now();
         console.warn("a picture was left out", error);
       }
     }
@@ -196,7 +227,7 @@ class Page {
 
   private turn(now_ms: number): void {
     const next = this.waiting;
-    if (next && this.align.holds) {
+    if (next && (this.align.holds || this.drawingLost)) {
       this.waiting = null;
       this.acknowledge(next.message.frameId);
       next.bitmap.close();
@@ -209,6 +240,13 @@ class Page {
       this.hmd?.turn(this.locked?.headingKnown ? this.locked.T_site_cam : null, fieldOf(this.frame.lens), now_ms);
     const playing = this.session?.playback?.playing ?? true;
     this.hud.show(this.frame, playing, now_ms);
+    this.hud.advise({
+      style: this.overlay.style,
+      nearEdge: this.overlay.nearEdge,
+      pose: this.locked,
+      kind: this.session?.kind ?? "replay",
+      aligning: this.align.active,
+    });
     this.hud.say({
       connection: this.connection,
       kind: this.session?.kind ?? "replay",
@@ -220,6 +258,8 @@ class Page {
       notice: this.session?.notice ?? null,
       health: this.session?.health ?? {},
       model: this.model,
+      drawingLost: this.drawingLost,
+      garbled: now_ms - this.garbled_ms < GARBLED_FOR_MS,
       asked: this.asked,
     });
   }
@@ -304,6 +344,13 @@ class Page {
     return hit && [hit.x, -hit.z, hit.y];
   }
 
+  /** Put this device's clock right by the server's. */
+  private setClock(serverDate: string | null): void {
+    this.look.clockOff_s = clockOff(serverDate, Date.now());
+    const words = clockWords(this.look.clockOff_s);
+    if (words) this.hud.announce(words);
+  }
+
   /** Be a head-mounted display's page, where the address asks for that. */
   private wear(): Hmd | null {
     const wearing = worn(new URLSearchParams(location.search));
@@ -318,6 +365,16 @@ class Page {
     const fill = (): void => this.composite.resize(canvas.clientWidth, canvas.clientHeight, window.devicePixelRatio);
     new ResizeObserver(fill).observe(canvas);
     fill();
+    watchInterruptions(canvas, {
+      drawing: (lost) => {
+        this.drawingLost = lost;
+        if (!lost) this.composite.begin();
+      },
+      back: (longAway) => {
+        this.lastPicture_ms &&= performance.now(); // none was missed but by not looking
+        if (longAway) this.hud.announce("Welcome back: these are the newest pictures.");
+      },
+    });
     const { classList } = document.body;
     element("hide", HTMLButtonElement).onclick = () => classList.add("clean");
     canvas.onclick = () => classList.remove("clean");

@@ -272,6 +272,13 @@ export class Composite {
     this.shot = shot;
   }
 
+  /** Draw again, once the browser has given the graphics back. */
+  begin(): void {
+    this.renderer.shadowMap.needsUpdate = true;
+    this.picture.needsUpdate = true;
+    this.redraw();
+  }
+
   /** Draw again, after something other than the picture has changed. */
   redraw(): void {
     if (this.shot) this.draw(this.shot);

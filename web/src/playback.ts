@@ -70,6 +70,9 @@ export function estimatorChoices(session: Session): readonly EstimatorChoice[] {
   return listed.map((name) => ({ name, reason: session.unavailable[name] ?? null }));
 }
 
+/** No message is under way for so long: the rig's clock was set back. */
+const JUMP_MS = 60_000;
+
 /**
  * How old the pose on the screen is.
  *
@@ -83,6 +86,7 @@ export class PoseAge {
   /** Take note of the message whose picture is being drawn: sent on the rig's clock, arrived on ours. */
   drawn(t_sent_ns: number, arrived_ms: number): void {
     const transit_ms = arrived_ms - t_sent_ns / 1e6;
+    if (transit_ms - this.fastest_ms > JUMP_MS) this.fastest_ms = Number.POSITIVE_INFINITY;
     this.fastest_ms = Math.min(this.fastest_ms, transit_ms);
     const late_ms = transit_ms - this.fastest_ms;
     this.born_ms = arrived_ms - late_ms;

@@ -26,12 +26,17 @@ export interface Situation {
   /** How a live rig's sensors are, by name. */
   readonly health: Readonly<Record<string, Told>>;
   readonly model: "loading" | "shown" | "failed";
+  /** Whether the browser has taken the graphics away. */
+  readonly drawingLost: boolean;
+  /** Whether messages come that this page cannot read. */
+  readonly garbled: boolean;
 }
 
 const QUIET_AFTER_MS = 2500;
 
 /** Return what stands in the visitor's way, most pressing first, or null when all is well. */
 export function sentenceFor(s: Situation): string | null {
+  if (s.drawingLost) return "The browser has stopped drawing: it begins again by itself, or the page is loaded anew …";
   if (s.connection === "refused")
     return "This page may not watch this walk: open the link that its owner gives you, or show a token at /enter.";
   if (s.connection === "other version") return "This page is of another version than the server: load it anew.";
@@ -40,9 +45,10 @@ export function sentenceFor(s: Situation): string | null {
   if (s.connection === "connecting") return s.sinceOpened_ms > QUIET_AFTER_MS ? "Connecting to the walk …" : null;
   if (s.sincePicture_ms === null && s.sinceOpened_ms > QUIET_AFTER_MS) return noPictures(s);
   if (s.sincePicture_ms !== null && s.sincePicture_ms > QUIET_AFTER_MS && s.playing) return noPictures(s);
+  if (s.garbled) return "What arrives cannot be read: is the server another version? Going on with what can be.";
   const trouble = Object.values(s.health).find((sensor) => sensor.trouble);
   if (trouble) return trouble.sentence;
-  if (s.model === "failed") return MODEL_FAILED;
+  if (s.model === "failed") return `${MODEL_FAILED} This page tries again by itself …`;
   if (s.sincePicture_ms !== null && !s.hasPose)
     return "Finding out where you are: the square appears when the position is known.";
   if (s.hasPose && !s.headingKnown) return "Walk a few steps so that I can find north.";

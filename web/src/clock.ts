@@ -1,0 +1,25 @@
+/** Whether this device's clock can be believed: beside the server's, which a rig sets by satellite or network. Pure. */
+
+/** Less than this moves the sun by less than its own width, and is what networks and whole seconds make. */
+const BELIEVED_S = 120;
+
+/** Return how much is to be added to this device's clock, seconds; 0 where the server tells no time, or nearly ours. */
+export function clockOff(serverDate: string | null, now_ms: number): number {
+  const server_ms = serverDate === null ? Number.NaN : Date.parse(serverDate);
+  const off_s = (server_ms - now_ms) / 1000;
+  return Number.isFinite(off_s) && Math.abs(off_s) > BELIEVED_S ? off_s : 0;
+}
+
+/** Return what to say of a clock that is off, or null. */
+export function clockWords(off_s: number): string | null {
+  if (off_s === 0) return null;
+  const much = Math.abs(off_s);
+  const [count, unit] =
+    much < 5400
+      ? [Math.round(much / 60), "minute"]
+      : much < 172_800
+        ? [Math.round(much / 3600), "hour"]
+        : [Math.round(much / 86_400), "day"];
+  const direction = off_s > 0 ? "behind" : "ahead";
+  return `This device's clock is ${count} ${unit}${count === 1 ? "" : "s"} ${direction}: the sun is drawn by the rig's clock.`;
+}
