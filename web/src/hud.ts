@@ -1,24 +1,10 @@
-/** The figures in the corner, and the one sentence in the middle. */
+/** What is known, in plain words, in the corner; its figures behind a key; and the one sentence in the middle. */
 
+import { adviceOf, headingWords, placeWords, type Shown } from "./advice";
 import { element, tell } from "./dom";
-import { headingOf } from "./frames";
 import { FrameRate, PoseAge } from "./playback";
-import type { CameraPose, FrameMessage } from "./wire";
-import {
-  compassPoint,
-  degreesText,
-  headingSigma,
-  horizontalSigma,
-  metresText,
-  motionColour,
-  motionWords,
-  type Situation,
-  sentenceFor,
-} from "./words";
-
-/** Ground truth as good as this is shown as the truth. */
-const EXACT_M = 0.005;
-const EXACT_RAD = 0.001;
+import type { FrameMessage } from "./wire";
+import { motionColour, motionWords, type Situation, sentenceFor } from "./words";
 
 export class Hud {
   readonly rate = new FrameRate();
@@ -26,9 +12,30 @@ export class Hud {
   private readonly cells = Object.fromEntries(
     ["rate", "age", "position", "heading", "motion", "estimator-now"].map((id) => [id, element(id, HTMLElement)]),
   );
+  private readonly advice = element("advice", HTMLElement);
+  private readonly figures = element("figures", HTMLElement);
+  private readonly more = element("more", HTMLButtonElement);
   private readonly notice = element("notice", HTMLElement);
   private readonly toast = element("toast", HTMLElement);
   private toastTimer: number | undefined;
+
+  constructor() {
+    this.more.onclick = () => this.turn();
+    window.addEventListener("keydown", ({ key, ctrlKey, metaKey, altKey, target }) => {
+      if (key === "i" && !ctrlKey && !metaKey && !altKey && !(target instanceof HTMLSelectElement)) this.turn();
+    });
+  }
+
+  /** Show the figures, or hide them again. */
+  private turn(): void {
+    this.figures.hidden = !this.figures.hidden;
+    this.more.setAttribute("aria-expanded", String(!this.figures.hidden));
+  }
+
+  /** Say why the square is shown as it is, and what to do about it. */
+  advise(shown: Shown): void {
+    tell(this.advice, adviceOf(shown));
+  }
 
   /** Show the figures of the picture that is drawn now. */
   show(frame: FrameMessage | null, playing: boolean, now_ms: number): void {
@@ -36,8 +43,8 @@ export class Hud {
     const age_ms = this.age.at(now_ms);
     this.set("age", age_ms === null || !playing ? "–" : `${Math.round(age_ms)} ms`);
     const pose = frame?.pose ?? null;
-    this.set("position", pose ? positionText(pose) : "–");
-    this.set("heading", pose ? headingText(pose) : "–");
+    this.set("position", pose ? placeWords(pose) : "not known yet");
+    this.set("heading", pose ? headingWords(pose) : "not known yet");
     const model = pose?.motionModel ?? null;
     this.set("motion", pose && model ? `${model}: ${motionWords(model, pose.estimator)}` : "none");
     this.cells["motion"]?.style.setProperty("--motion", motionColour(model));
@@ -60,16 +67,4 @@ export class Hud {
     const cell = this.cells[id];
     if (cell && cell.textContent !== text) cell.textContent = text;
   }
-}
-
-function positionText({ covariance, isTruth }: CameraPose): string {
-  const sigma_m = horizontalSigma(covariance);
-  return isTruth && sigma_m < EXACT_M ? "true" : `± ${metresText(sigma_m)}`;
-}
-
-function headingText({ T_site_cam, covariance, headingKnown, isTruth }: CameraPose): string {
-  if (!headingKnown) return "unknown";
-  const point = compassPoint(headingOf(T_site_cam));
-  const sigma_rad = headingSigma(covariance);
-  return isTruth && sigma_rad < EXACT_RAD ? `${point}, true` : `${point} ± ${degreesText(sigma_rad)}`;
 }
