@@ -34,7 +34,12 @@ _PAGE: Final = """<!doctype html><html lang="en"><meta charset="utf-8"><meta nam
 <title>Agora · enter</title><style>{style}</style><h1>Agora</h1><p>{sentence}</p>
 <form method="post" action="/enter"><label for="token">Token or code</label>
 <input id="token" name="token" type="password" autocomplete="off" required autofocus><button>Enter</button></form></html>"""
-_HEADERS: Final = {"Content-Security-Policy": _POLICY, "Cache-Control": "no-store"}
+_HEADERS: Final = {
+    "Content-Security-Policy": _POLICY,
+    "Cache-Control": "no-store",
+    # under no-referrer browsers send the form with `Origin: null`, which is what a foreign page's would say
+    "Referrer-Policy": "strict-origin",
+}
 
 
 class CodeRequest(Struct, frozen=True, forbid_unknown_fields=True):

@@ -328,6 +328,7 @@ def test_a_token_shown_at_the_entrance_becomes_a_cookie(walk: Undisturbed) -> No
     with httpx.Client(base_url=walk.server.url, trust_env=False) as browser:
         page = browser.get("/enter")
         assert "form-action 'self'" in page.headers["content-security-policy"]
+        assert page.headers["referrer-policy"] == "strict-origin"
         assert browser.post("/enter", data={"token": FORGED}).status_code == 401
         assert browser.post("/enter", data={}).status_code == 401
         assert browser.post("/enter", data={"token": token("viewer")}).headers["location"] == "/"

@@ -18,7 +18,9 @@ const MODEL_WORDS: Readonly<Record<string, string>> = { roman: "AD 150", today: 
 async function showWalks(): Promise<void> {
   const note = element("walks-note", HTMLElement);
   try {
-    const sessions = parseSessions(await (await fetch("/api/sessions")).json());
+    const answer = await fetch("/api/sessions");
+    element("enter", HTMLElement).hidden = answer.status !== 401;
+    const sessions = answer.status === 401 ? [] : parseSessions(await answer.json());
     const links = sessions.map((session) => {
       const link = document.createElement("a");
       link.href =
