@@ -22,6 +22,7 @@ from rich.table import Table
 from vqf import VQF
 
 from tests.benchmarks.endurance import endure
+from tests.benchmarks.fanout import measure, rows_of
 from tracker.attitude import Madgwick
 from tracker.cycle import Cycle, CycleFilter
 from tracker.estimators import ESTIMATORS, SELECTORS, missing_sensors
@@ -233,6 +234,12 @@ def simulated_log(seconds: float = 120.0) -> Log:
     return Log.open(path)
 
 
+def fanout_rows() -> list[Row]:
+    """One rig to many viewers over loopback, with one that stalls and one on a slow line, beside a plain loop of sockets."""
+    frames, poses, plain = (measure(*what) for what in (("frames", 8.0), ("poses", 8.0), ("poses", 8.0, "plain")))
+    return [Row(*fields) for fields in rows_of(frames, poses, plain)]
+
+
 def camera_works() -> list[Callable[[], list[Row]]]:
     """What needs pictures; nothing where no walk with a camera is at hand."""
     path = next((path for path in CAMERA_LOGS if path.is_file()), None)
@@ -255,6 +262,7 @@ def main() -> None:
         model_rows,
         attitude_rows,
         endurance_rows,
+        fanout_rows,
         lambda: replay_rows(simulated_log(), "without camera, 250 Hz", 20.0, repeats=3),
     ]
     works += camera_works()
