@@ -130,7 +130,7 @@ def _run(
 ) -> None:
     # imported here, so that `agora rules` need not wait for a web server
     from server.rig_sources import RigSources
-    from server.tuning import tune
+    from server.tuning import settle, tune
     from server.walking import Walking, WalkSettings, recording_in, rig_text
     from tracker.rig_file import find_rig_file
 
@@ -155,6 +155,7 @@ def _run(
         site, sources, makers.rig(), settings,
         correct=rig_file.correct, web=web, port=port, server_url=to, token=token, session=session,
     ) as walking:  # fmt: skip
+        settle()
         if walking.url is not None:
             out.print(f"Agora is at {walking.url}", soft_wrap=True)
             sys.stdout.flush()
