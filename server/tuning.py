@@ -13,8 +13,8 @@ def tune() -> None:
 def settle() -> None:
     """Leave what the program has loaded out of the collection of garbage, once everything is put together.
 
-    A full collection comes every few minutes and stops all threads: for 93 ms with the site's model and the libraries in it, for 2 ms
-    without them.
+    A full collection comes every few minutes and stops all threads: for 93 ms with the site's model and the libraries in it, for
+    2 ms without them.
     """
     gc.collect()
     gc.freeze()
