@@ -22,7 +22,7 @@ def test_a_walk_is_told_by_what_it_holds(tmp_path: Path) -> None:
 
 def test_a_bomb_and_a_file_without_measurements_are_refused(tmp_path: Path) -> None:
     with pytest.raises(LogRefused) as bombed:
-        inspect(with_chunk(tmp_path / "a.mcap", bomb(64 * 2**20), 50 * 10**9))
+        inspect(with_chunk(tmp_path / "a.mcap", bomb(50 * 10**9), 50 * 10**9))
     assert bombed.value.status == 413
     with pytest.raises(LogRefused, match="holds no IMU and no GPS") as empty:
         inspect(with_chunk(tmp_path / "b.mcap", b"", 0, ""))

@@ -79,9 +79,11 @@ def test_a_body_that_does_not_say_how_long_it_is_is_cut_at_the_limit(
 
 
 def test_what_is_no_walk_is_refused_and_leaves_nothing(server: WebServer, tmp_path: Path) -> None:
-    bombed = with_chunk(tmp_path / "b", bomb(64 * 2**20), 50 * 10**9).read_bytes()
+    data = bomb(50 * 10**9)[: MAX_BYTES - 10**5]  # what fits inflates to 29 GB
+    bombed = with_chunk(tmp_path / "b", data, 50 * 10**9).read_bytes()
+    lying = with_chunk(tmp_path / "l", data, 10**6).read_bytes()
     empty = with_chunk(tmp_path / "e", b"", 0, "").read_bytes()
-    for body, status in ((b"GIF89a", 415), (b"", 415), (bombed, 413), (empty, 422), (bombed[:8], 422)):
+    for body, status in ((b"GIF89a", 415), (b"", 415), (bombed, 413), (lying, 422), (empty, 422), (bombed[:8], 422)):
         refused = ask(server, "PUT", "/api/logs/bad", content=body)
         assert (refused.status_code, bool(refused.json()["detail"])) == (status, True)
         assert str(tmp_path) not in refused.text

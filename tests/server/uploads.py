@@ -4,17 +4,18 @@ import struct
 from pathlib import Path
 
 import lz4.frame  # type: ignore[import-untyped]
-import zstandard
 
 MAGIC = b"\x89MCAP0\r\n"
-GIB = 2**30
+_BLOCK = 128 * 1024
 
 
 def bomb(size: int) -> bytes:
-    """Return a zstd frame of a few kilobytes that inflates to so many zeros and says nothing of it."""
-    compressor = zstandard.ZstdCompressor(level=19).compressobj()
-    piece = bytes(min(size, 16 * 2**20))
-    return b"".join([compressor.compress(piece) for _ in range(size // len(piece))] + [compressor.flush()])
+    """Return a zstd frame that inflates to at least so many zeros: blocks of one byte repeated (RFC 8878)."""
+    blocks = -(-size // _BLOCK)
+    block = struct.pack("<I", 1 << 1 | _BLOCK << 3)[:3] + b"\0"
+    last = struct.pack("<I", 1 | 1 << 1 | _BLOCK << 3)[:3] + b"\0"
+    # no content size, no checksum, a window of 128 KiB
+    return b"\x28\xb5\x2f\xfd" + b"\x00\x38" + block * (blocks - 1) + last
 
 
 def with_chunk(path: Path, data: bytes, declared: int, compression: str = "zstd") -> Path:
