@@ -131,7 +131,7 @@ def _run(
     # imported here, so that `agora rules` need not wait for a web server
     from server.rig_sources import RigSources
     from server.tuning import settle, tune
-    from server.walking import Walking, WalkSettings, recording_in, rig_text
+    from server.walking import Walking, WalkSettings, known_rig, recording_in, rig_text
     from tracker.rig_file import find_rig_file
 
     if web is not None:
@@ -147,6 +147,7 @@ def _run(
         record=recording_in(folder) if folder is not None else log,
         tracks=log is None,
         about={"rig": rig_text(rig), "gps": specs[0], "imu": specs[1], "camera": specs[2]},
+        rig_file=known_rig(rig),
     )
     stop = Event()
     for number in (SIGINT, SIGTERM):

@@ -26,7 +26,10 @@ from tracker.lens import scaled
 from tracker.measurements import Frame, GpsFix, Measurement
 from tracker.pipeline import Pipeline
 from tracker.playback import Shown
+from tracker.precise.memory import to_toml
+from tracker.retractable import Retractable
 from tracker.rig import CameraModel, Rig, guessed_camera
+from tracker.rig_memory import load_memory, save_memory
 from tracker.running.core import WalkCore
 from tracker.running.health import SensorState
 from tracker.running.recorder import Recorder, as_read, recorded
@@ -65,6 +68,7 @@ class LiveRig:
         tracks: bool = True,
         record: Path | None = None,
         about: Mapping[str, str] | None = None,
+        rig_file: Path | None = None,
         console: Console | None = None,
     ) -> None:
         """Prepare a walk; the recording's file is opened, and nothing else runs.
@@ -78,6 +82,7 @@ class LiveRig:
             tracks: Whether there is an estimator at all; a rig that only records has none.
             record: The file to write; None for none.
             about: What goes to the recording's head.
+            rig_file: Beside it is kept what the rig learns of itself; None to keep nothing.
             console: The operator's, if there is one.
 
         Raises:
@@ -93,9 +98,11 @@ class LiveRig:
         self._rig = as_read(self._recorded_rig)
         self.estimator = _choose(estimator, names, self._rig) if tracks else ""
         self._utc_start_ns, self._t_start_ns = time_ns(), monotonic_ns()
+        self._rig_file = rig_file if placing.anchor == "site" else None  # elsewhere nobody knows the receiver's error
+        self._memory = None if self._rig_file is None else load_memory(self._rig_file, self._utc_offset_ns)
         self._recorder = None if record is None else self._record(record, dict(about or {}))
         self._first_fix: GpsFix | None = None
-        core = WalkCore(
+        self._core = WalkCore(
             self._make_pipeline,
             self._rig,
             dict.fromkeys(names, self._t_start_ns),
@@ -103,7 +110,7 @@ class LiveRig:
             correct=correct,
             record=self._take,
         )
-        self._walk = LiveWalk(core, sources, show=self._show, show_pose=self._show_pose, recorder=self._recorder)
+        self._walk = LiveWalk(self._core, sources, show=self._show, show_pose=self._show_pose, recorder=self._recorder)
         self._console = console
         self._link: RigLink | None = None
         self._presenter: Presenter | None = None
@@ -113,6 +120,7 @@ class LiveRig:
 
     def _record(self, path: Path, about: dict[str, str]) -> Recorder:
         about["estimator"] = self.estimator
+        about["memory"] = "" if self._memory is None else to_toml(self._memory)
         return Recorder(
             path, self._recorded_rig, t_start_ns=self._t_start_ns, utc_start_ns=self._utc_start_ns, about=about
         )
@@ -126,6 +134,7 @@ class LiveRig:
             rig=self._rig,
             date_ns=self._utc_start_ns,
             eyes_z_m=self._placing.eyes_for(self.estimator),
+            memory=self._memory,
         )
         return self._placing.levelled(pipeline)
 
@@ -146,8 +155,23 @@ class LiveRig:
     def close(self) -> None:
         """End every thread and close the recording."""
         self._walk.close()
+        self._remember()
         if self._link is not None:
             self._link.close()
+
+    @property
+    def _utc_offset_ns(self) -> int:
+        """UTC less the walk's clock."""
+        return self._utc_start_ns - self._t_start_ns
+
+    def _remember(self) -> None:
+        """Keep what was learned for the next walk; fusion has ended."""
+        pipeline = self._core.pipeline
+        if self._rig_file is None or pipeline is None or not isinstance(pipeline.estimator, Retractable):
+            return
+        memory = pipeline.estimator.memory()
+        if memory is not None:
+            save_memory(self._rig_file, memory, self._utc_offset_ns)
 
     @property
     def state(self) -> WalkState:

@@ -43,6 +43,8 @@ class WalkSettings:
     """Whether there is an estimator at all."""
     about: Mapping[str, str] | None = None
     """What else goes to the recording's head."""
+    rig_file: Path | None = None
+    """Beside it is kept what the rig learns of itself; None to keep nothing."""
 
 
 class Walking:
@@ -105,6 +107,7 @@ class Walking:
                 tracks=settings.tracks,
                 record=settings.record,
                 about={"agora": version("agora"), **(settings.about or {})},
+                rig_file=settings.rig_file,
                 console=console,
             )
         except BaseException:
@@ -187,7 +190,13 @@ def recording_in(folder: Path) -> Path:
     return folder / f"walk-{datetime.now(UTC):%Y%m%d-%H%M%S}.mcap"
 
 
+def known_rig(path: Path | None) -> Path | None:
+    """Return the rig file, named or in its usual place; None where there is none, and then no rig is known from another."""
+    place = DEFAULT_PLACE.expanduser() if path is None else path
+    return place if place.is_file() else None
+
+
 def rig_text(path: Path | None) -> str:
     """Return the rig file's text for a recording's head; empty where there is none."""
-    place = DEFAULT_PLACE.expanduser() if path is None else path
-    return place.read_text(encoding="utf-8") if place.is_file() else ""
+    place = known_rig(path)
+    return "" if place is None else place.read_text(encoding="utf-8")

@@ -5,6 +5,7 @@ from tracker.estimators import PRECISE, Settings, build
 from tracker.geomagnetism import magnetic_field
 from tracker.pipeline import Pipeline
 from tracker.precise.ground import EyeHeight
+from tracker.precise.memory import Memory
 from tracker.retractable import Retractable
 from tracker.rig import Rig
 from tracker.vision import VisionFrontEnd
@@ -20,6 +21,7 @@ def assemble(
     settings: Settings | None = None,
     eyes_z_m: EyeHeight | None = None,
     looks: bool = True,
+    memory: Memory | None = None,
 ) -> Pipeline:
     """Return a new pipeline.
 
@@ -31,6 +33,7 @@ def assemble(
         truth_origin: Where the map frame of a log's truth is laid; None where it is the site's.
         settings: None for the defaults.
         eyes_z_m: Height of the rig in that frame where it stands on the ground; None where no ground is known.
+        memory: What the same rig had learned at its last start; None where nothing is known.
         looks: Whether it has a front end of its own; else it is fed what another one made of the pictures.
 
     Raises:
@@ -48,6 +51,7 @@ def assemble(
             truth_origin=truth_origin,
             settings=settings,
             eyes_z_m=eyes_z_m,
+            memory=memory,
         )
 
     # only `precise` listens to what visitors say

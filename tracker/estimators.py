@@ -21,6 +21,7 @@ from tracker.paper import PaperEstimator, PaperSettings
 from tracker.precise.compass import Compass
 from tracker.precise.estimator import PreciseEstimator
 from tracker.precise.ground import EyeHeight
+from tracker.precise.memory import Memory
 from tracker.precise.settings import PreciseSettings
 from tracker.rig import Rig
 from tracker.truth import TruthEstimator
@@ -76,6 +77,7 @@ def build(
     settings: Settings | None = None,
     earth_field: MagneticField | None = None,
     eyes_z_m: EyeHeight | None = None,
+    memory: Memory | None = None,
 ) -> Estimator:
     """Return a new estimator.
 
@@ -88,6 +90,7 @@ def build(
         settings: None for the defaults.
         earth_field: What a magnetometer should measure there; None where nobody knows, and then every field is believed.
         eyes_z_m: Height of the rig in site where it stands on the ground, which `precise` asks for; None where no ground is known.
+        memory: What the same rig had learned at its last start, which `precise` takes up; None where nothing is known.
 
     Raises:
         UnknownEstimator: No estimator has that name.
@@ -106,6 +109,7 @@ def build(
             uses_camera=uses_camera,
             settings=settings.precise,
             eyes_z_m=eyes_z_m,
+            memory=memory,
         )
     return PaperEstimator(
         name,

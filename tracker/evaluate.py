@@ -11,15 +11,16 @@ from numpy.typing import NDArray
 
 from tracker import score
 from tracker.assembly import assemble
-from tracker.errors import MissingSensor
+from tracker.errors import MalformedInput, MissingSensor
 from tracker.estimator import NO_MOTION_MODEL, Estimator, Innovation, Origin, Pose
 from tracker.estimators import Settings, missing_sensors
 from tracker.geodesy import SiteFrame
-from tracker.log import Log
+from tracker.log import RECORDING, Log
 from tracker.measurements import Frame, GpsFix, ImuSample, Matrix, Measurement, Outcome, TruePose, VisualMotion
 from tracker.paper import PaperEstimator
 from tracker.pipeline import Pipeline
 from tracker.precise.ground import EyeHeight
+from tracker.precise.memory import Memory, from_toml
 from tracker.score import Figures
 
 _PERIOD_NS = round(1e9 / score.RATE_HZ)
@@ -94,7 +95,17 @@ def make_pipeline(
         settings=settings,
         eyes_z_m=eyes_z_m,
         looks=look_again or not log.info.counts["motions"],
+        memory=_memory_of(log),
     )
+
+
+def _memory_of(log: Log) -> Memory | None:
+    """Return what the rig of a recording had remembered when it started: a replay without it would give other poses."""
+    text = log.metadata.get(RECORDING, {}).get("memory", "")
+    try:
+        return from_toml(text) if text else None
+    except MalformedInput:
+        return None
 
 
 def run(

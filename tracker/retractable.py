@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 from tracker.estimator import Estimator, Innovation, Pose, Snapshot
 from tracker.measurements import Measurement, Outcome, Retraction, Sighting, Standpoint
+from tracker.precise.estimator import PreciseEstimator
+from tracker.precise.memory import Memory
 
 #: Who has looked at the result for so long has kept it.
 KEPT_S = 60.0
@@ -33,10 +35,9 @@ class Retractable:
         self._estimator = make()
         self._before: list[_Before] = []
 
-    @property
-    def inner(self) -> Estimator:
-        """The estimator whose poses these are."""
-        return self._estimator
+    def memory(self) -> Memory | None:
+        """Return what the other has learned that is worth keeping for the next start, if it is of the kind that learns."""
+        return self._estimator.memory() if isinstance(self._estimator, PreciseEstimator) else None
 
     @property
     def name(self) -> str:

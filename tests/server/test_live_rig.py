@@ -23,7 +23,9 @@ from tracker.geometry import transform
 from tracker.log import Log
 from tracker.measurements import Matrix
 from tracker.playback import Playback
+from tracker.precise.memory import from_toml
 from tracker.rig import CameraModel, Rig
+from tracker.rig_memory import memory_place
 from tracker.simulate import AGORA_ORIGIN
 from tracker.sources.played import Played
 from tracker.upright import Upright
@@ -167,6 +169,21 @@ def test_what_no_estimator_can_do_is_refused_before_anything_starts(wall: Log) -
         LiveRig([played.source("imu")], wall.rig, PLACING, estimator="gps-imu/famm")
     with pytest.raises(UnknownEstimator):
         LiveRig([played.source("imu")], wall.rig, PLACING, estimator="nonsense")
+
+
+def test_what_a_rig_has_learned_is_there_at_its_next_start_and_in_its_recording(wall: Log, tmp_path: Path) -> None:
+    rig_file = tmp_path / "rig.toml"
+    rig_file.write_text("")
+    memory = memory_place(rig_file)
+    with watching(wall, tmp_path, record=tmp_path / "first.mcap", rig_file=rig_file) as connection:
+        frame_where(connection, lambda meta: meta.pose_valid)
+    assert memory.is_file()
+    with watching(wall, tmp_path, record=tmp_path / "second.mcap", rig_file=rig_file) as connection:
+        frame_where(connection, lambda meta: meta.pose_valid)
+    first, second = (Log.open(tmp_path / f"{name}.mcap").metadata["agora"]["memory"] for name in ("first", "second"))
+    assert first == ""
+    kept = from_toml(second)
+    assert kept.t_ns < Log.open(tmp_path / "second.mcap").info.t_start_ns, "by the clock of the second walk"
 
 
 def ask(connection: Connection, action: str, value: object) -> dict[str, Any]:
