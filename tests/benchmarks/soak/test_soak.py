@@ -29,7 +29,7 @@ from tracker.measurements import Frame, ImuSample
 from tracker.pictures import EncodedPicture, encode_jpeg
 from tracker.simulate import START_NS
 
-SECONDS = 6.0
+SECONDS = 4.0
 
 
 def pictures(number: int) -> list[EncodedPicture]:
@@ -75,6 +75,7 @@ def test_the_endless_walk_goes_on_at_its_end() -> None:
     assert stamps[-1] - stamps[0] > 200e9
 
 
+@pytest.mark.slow
 def test_a_live_walk_is_watched_to_its_end(tmp_path: Path) -> None:
     require_built(load_site(SITE))
     log, recording = tmp_path / "log.mcap", tmp_path / "recorded" / "walk.mcap"

@@ -53,6 +53,7 @@ def told(command: list[str], *codes: int) -> dict[str, dict[str, Any]]:
     return {f"{check['name']} {check['part']}".strip(): check for check in said["checks"]}
 
 
+@pytest.mark.slow
 def test_with_nothing_plugged_in_every_sensor_has_its_remedy_and_the_code_is_1() -> None:
     absent = ["--gps", "serial:/dev/nowhere", "--imu", "phidget:1", "--camera", "/dev/video77", "--rig", "nowhere.toml"]
     checks = told([AGORA, "doctor", "--json", "--port", "0", "--no-browser", *absent], 1)
@@ -76,6 +77,7 @@ def test_where_nothing_is_asked_for_nothing_is_amiss(tmp_path: Path) -> None:
     assert "All that was asked for is well." in done.stdout if built else "make setup" in done.stdout
 
 
+@pytest.mark.slow
 def test_with_two_phidgets_and_a_camera_all_is_found_and_measured(tmp_path: Path) -> None:
     """By the real Phidget22 library, on a bus that is not there. How fast they are is not asked: the machine may be busy."""
     if shutil.which("gcc") is None:
