@@ -1,7 +1,7 @@
 """`make bench`: speed beside peers, in the same run on the same data; a table, ratio first, and build/bench.json.
 
 A ratio is ours over the rival's where less is better, and ours over the target where more is; the unit says which.
-Times are this process's CPU time on one core, so that a busy machine changes them little.
+Times are this process's CPU time on one core, so that a busy machine changes them little; the AR page's are the wall's.
 """
 
 import json
@@ -21,6 +21,7 @@ from rich.progress import track
 from rich.table import Table
 from vqf import VQF
 
+from tests.benchmarks import ar_page
 from tests.benchmarks.endurance import endure
 from tests.benchmarks.fanout import measure, rows_of
 from tracker.attitude import Madgwick
@@ -223,6 +224,25 @@ def run_seconds(log: Log, name: str) -> float:
     return process_time() - began
 
 
+def page_rows(path: Path) -> list[Row]:
+    """From the arrival of a message at the AR page to its last pixel, in software: wall time, so a busy machine is slower."""
+    rows = []
+    for drawn in ar_page.measure(path):
+        target_ms = 20.0 if drawn.effort == ar_page.FIRST else 40.0
+        name = f"AR page 640x480, {drawn.renderer}, {drawn.effort}, {drawn.triangles} triangles"
+        rows += [
+            Row(
+                f"{name}: arrival to drawn, p50",
+                drawn.p50_ms,
+                "ms",
+                f"target {target_ms:g} ms",
+                drawn.p50_ms / target_ms,
+            ),
+            Row(f"{name}: drawn", drawn.pictures_hz, "pictures/s", "floor 10 a second", drawn.pictures_hz / 10.0),
+        ]
+    return rows
+
+
 def simulated_log(seconds: float = 120.0) -> Log:
     """A walk without camera, IMU at 250 Hz."""
     rig = default_rig()
@@ -247,6 +267,7 @@ def camera_works() -> list[Callable[[], list[Row]]]:
         return []
     log = Log.open(path)
     return [
+        lambda: page_rows(path),
         lambda: vision_rows(log),
         lambda: replay_rows(log, f"with camera, {log.name}", 5.0, repeats=1),
     ]
