@@ -73,6 +73,7 @@ def _live(asked: argparse.Namespace, journal: Journal, console: Console) -> list
             )
     info = Log.open(log).info
     kept = Log.open(folder / "walk.mcap").info.counts
+    rmtree(folder)
     rows = live.rows(samples, (info.t_end_ns - info.t_start_ns) * 1e-9, kept)
     return [*rows, Row("a bare timer's lateness before it, at ordinary priority, p99", timer_ms, "ms")]
 
