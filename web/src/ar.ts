@@ -376,6 +376,7 @@ class Page {
       },
     });
     const { classList } = document.body;
+    classList.toggle("frugal", this.composite.drawsInSoftware);
     element("hide", HTMLButtonElement).onclick = () => classList.add("clean");
     canvas.onclick = () => classList.remove("clean");
     window.addEventListener("keydown", ({ key, ctrlKey, metaKey, target }) => {
