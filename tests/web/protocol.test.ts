@@ -18,6 +18,7 @@ const SESSION = {
   notice: null,
   health: {},
   sharing: false,
+  title: "A walk at noon",
   connected: true,
 };
 
