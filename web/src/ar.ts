@@ -70,6 +70,8 @@ class Page {
   private waiting: { message: FrameMessage; bitmap: ImageBitmap; arrived_ms: number } | null = null;
   private newest: { bytes: ArrayBuffer; arrived_ms: number } | null = null;
   private decoding = false;
+  /** Whether nothing was drawn since the screen was. */
+  private isFree = false;
   private shown: ImageBitmap | null = null;
   private lastPicture_ms: number | null = null;
   private model: Situation["model"] = "loading";
@@ -89,6 +91,7 @@ class Page {
     void this.join();
     const loop = (): void => {
       this.turn(performance.now());
+      this.isFree = true;
       requestAnimationFrame(loop);
     };
     requestAnimationFrame(loop);
@@ -206,6 +209,9 @@ class Page {
           this.waiting.bitmap.close();
         }
         this.waiting = { message, bitmap, arrived_ms };
+        // at once, but one for each time that the screen is drawn: more would only queue up
+        if (this.isFree) this.turn(performance.now());
+        this.isFree = false;
       } catch (error) {
         // a picture that does not decode is as good as drawn: else the server would wait for it
         if (error instanceof WireError && error.frameId !== null) this.acknowledge(error.frameId);

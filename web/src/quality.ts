@@ -47,7 +47,7 @@ const SLOW_MS = 36;
 /** Twice as slow as this is left at once. */
 const AWFUL_MS = 80;
 /** Faster than this there is time for the next step. */
-const SPARE_MS = 18;
+const SPARE_MS = 24;
 const LOOKED_AT = 8;
 const FIRST_PATIENCE_MS = 20_000;
 const MOST_PATIENCE_MS = 640_000;
