@@ -8,7 +8,7 @@ from server.blocks import Block, Code, Document, Grid, Heading, Items, Shown, Te
 from server.markdown import write_markdown
 from server.paper.cases import ROOT
 from server.plots.style import drawn
-from tests.benchmarks.accuracy.goals import BOTH, CAMERA, GPS_IMU
+from tests.benchmarks.accuracy.goals import BOTH, CAMERA, GOALS, GPS_IMU
 from tests.benchmarks.accuracy.plots import goals_figure, logs_figure, seeds_figure
 from tests.benchmarks.accuracy.scenarios import SCENARIOS
 from tests.benchmarks.accuracy.study import RIVALLED
@@ -83,7 +83,7 @@ def compose(study: Figures, logs: Figures | None) -> Document:
 
 def _asked(goals: Sequence[Figures]) -> list[Block]:
     missed = [row for row in goals if row["met"] == "no"]
-    rows = tuple(_goal(row) for row in goals)
+    rows, left_out = tuple(_goal(row) for row in goals), _left_out(goals)
     head = ("figure", "walks", "sensors", "median", "95 %", "worst walk", "at most", "aim", "met")
     caption = "Diamonds are missed, bars are 95 % intervals, the small marks are the aims."
     return [
@@ -94,6 +94,7 @@ def _asked(goals: Sequence[Figures]) -> list[Block]:
         ),
         *([Items(tuple(_miss(row) for row in missed))] if missed else ()),
         Shown(drawn(goals_figure(goals), "goals", f"What was asked and what was measured, over seeds. {caption}")),
+        *([Text(f"Not measured in this run: {left_out}.")] if left_out else []),
         Grid(
             "all-goals",
             "Every figure that is asked for; of a consistency the mean over walks, and its band.",
@@ -107,7 +108,15 @@ def _asked(goals: Sequence[Figures]) -> list[Block]:
 def _goal(row: Figures) -> tuple[str, ...]:
     measured = (_number(row), span(row["interval"]), f"{row['worst']:.3g}")
     asked = (span(row["at_least"]), span(row["aim"]), _MET[row["met"]])
-    return (row["goal"], row["scenario"], _sensors(row["estimator"]), *measured, *asked)
+    walks = f"{row['scenario']}, {row['seeds']}"
+    return (row["goal"], walks, _sensors(row["estimator"]), *measured, *asked)
+
+
+def _left_out(goals: Sequence[Figures]) -> str:
+    """Return what is asked for and was not run, scenario by scenario."""
+    done = {(row["scenario"], row["estimator"]) for row in goals}
+    asked = dict.fromkeys((goal.scenario, name) for goal in GOALS for name in goal.estimators)
+    return "; ".join(f"{scenario} ({_sensors(name)})" for scenario, name in asked if (scenario, name) not in done)
 
 
 def _miss(row: Figures) -> str:

@@ -36,8 +36,9 @@ def test_what_is_missed_is_told_with_what_was_asked() -> None:
 
 def test_every_number_of_the_study_is_in_the_tables() -> None:
     text = markdown(compose(_study(0.2), None), "accuracy")
-    assert "| ATE over raw GPS's | plain | with camera | 0.55 |" in text
+    assert "| ATE over raw GPS's | plain, 3 | with camera | 0.55 |" in text
     assert "Seeds 101 to 103" in text
+    assert "Not measured in this run: ground (GPS, IMU); ground (with camera);" in text
     assert markdown(compose(_study(0.2), None), "accuracy") == text
 
 
