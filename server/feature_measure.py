@@ -26,6 +26,7 @@ from tracker.errors import InputError
 from tracker.evaluate import Run, figures, follow, log_origin, make_pipeline
 from tracker.log import Log
 from tracker.measurements import Matrix, Measurement, VisualMotion
+from tracker.pipeline import Pipeline
 from tracker.simulate import Walk
 
 SITE = Path(__file__).parents[1] / "assets" / "state_agora"
@@ -63,7 +64,8 @@ def vision_figures(walk: Walk, motions: list[VisualMotion]) -> Row:
 def filter_figures(log: Log, name: str, motions: list[VisualMotion]) -> Row:
     """Return the filter error (m, rad) and ATE (m) of an estimator that is fed a log with these motions for its pictures."""
     sensors: Iterable[Measurement] = log.messages(camera=False)
-    pipeline = make_pipeline(name, log, log_origin(log))
+    # without a front end: the motions are there
+    pipeline = Pipeline(make_pipeline(name, log, log_origin(log)).estimator)
     info = log.info
     run = Run(log.name, name, info.t_start_ns, info.duration_s, log_origin(log), info.truth_origin)
     follow(pipeline, merge(sensors, motions, key=lambda measurement: measurement.t_recv_ns), run)

@@ -1,7 +1,5 @@
 """A family of motion models: each member's run is the one that its estimator would have had alone."""
 
-from dataclasses import dataclass, field
-
 import numpy as np
 import pytest
 
@@ -42,22 +40,6 @@ def _family(sensors: str) -> PaperFamily:
     return PaperFamily(sensors, selectors, origin=AGORA_ORIGIN, rig=default_rig(), declination_rad=DECLINATION_RAD)
 
 
-@dataclass
-class _NoEyes:
-    """A front end that is never given a picture: the motions come ready made."""
-
-    seen: list[int] = field(default_factory=list)
-
-    def step(self, frame: object) -> None:
-        self.seen.append(0)
-
-    def snapshot(self) -> None:
-        return None
-
-    def restore(self, snapshot: object) -> None:
-        del snapshot
-
-
 def _template(name: str) -> Run:
     return Run("walk", name, START_NS, SECONDS, AGORA_ORIGIN, AGORA_ORIGIN)
 
@@ -67,7 +49,7 @@ def _alone(name: str, measurements: list[Measurement]) -> Run:
         name, origin=AGORA_ORIGIN, rig=default_rig(), declination_rad=DECLINATION_RAD, truth_origin=AGORA_ORIGIN
     )
     result = _template(name)
-    follow(Pipeline(estimator, _NoEyes()), measurements, result)
+    follow(Pipeline(estimator), measurements, result)
     return result
 
 
