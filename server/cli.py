@@ -8,8 +8,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from signal import SIGINT, SIGTERM, signal
-from threading import Event
 from typing import Annotated, Literal, NoReturn
 
 import typer
@@ -35,6 +33,7 @@ from server.options import (
     SiteFolder,
     require_built,
     site_with,
+    stop_asked,
 )
 from server.serve_command import serve
 from server.token_command import token
@@ -117,9 +116,7 @@ def _show(
     log = Log.open(path)
     settings = ReplaySettings(estimator, anchor, height, looping, look_again)
     require_built(site)
-    stop = Event()
-    for number in (SIGINT, SIGTERM):
-        signal(number, lambda *_: stop.set())
+    stop = stop_asked()
     with Showing(site, log, settings, port=port, web=WEB) as showing:
         out.print(f"Agora is at {showing.url}", soft_wrap=True)
         sys.stdout.flush()

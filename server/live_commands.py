@@ -5,7 +5,6 @@ import sys
 import webbrowser
 from contextlib import nullcontext
 from pathlib import Path
-from signal import SIGINT, SIGTERM, signal
 from threading import Event
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -26,6 +25,7 @@ from server.options import (
     SiteFolder,
     require_built,
     site_with,
+    stop_asked,
 )
 
 Gps = Annotated[
@@ -149,9 +149,7 @@ def _run(
         about={"rig": rig_text(rig), "gps": specs[0], "imu": specs[1], "camera": specs[2]},
         rig_file=known_rig(rig),
     )
-    stop = Event()
-    for number in (SIGINT, SIGTERM):
-        signal(number, lambda *_: stop.set())
+    stop = stop_asked()
     with Walking(
         site, sources, makers.rig(), settings,
         correct=rig_file.correct, web=web, port=port, server_url=to, token=token, session=session,

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 from pathlib import Path
+from signal import SIGINT, SIGTERM, signal
+from threading import Event
 from typing import Annotated, Literal
 
 import typer
@@ -47,6 +49,14 @@ def site_with(folder: Path, eye_height_m: float | None) -> Site:
     """Return the site in a folder, with eyes of another height where one is given."""
     site = load_site(folder)
     return site if eye_height_m is None else replace(site, eye_height_m=eye_height_m)
+
+
+def stop_asked() -> Event:
+    """Return an event that is set when somebody asks this program to end: ctrl-C, or the system's own manager."""
+    stop = Event()
+    for number in (SIGINT, SIGTERM):
+        signal(number, lambda *_: stop.set())
+    return stop
 
 
 def require_built(site: Site, web: Path = WEB) -> None:

@@ -3,14 +3,12 @@
 import os
 import sys
 from pathlib import Path
-from signal import SIGINT, SIGTERM, signal
-from threading import Event
 from typing import Annotated, Literal
 
 import typer
 from rich.console import Console
 
-from server.options import SITE, WEB, require_built, site_with
+from server.options import SITE, WEB, require_built, site_with, stop_asked
 
 out = Console(highlight=False)
 
@@ -64,9 +62,7 @@ def serve(
     place = site_with(Path(configuration.site) if configuration.site else SITE, None)
     web = Path(configuration.web) if configuration.web else WEB
     require_built(place, web)
-    stop = Event()
-    for number in (SIGINT, SIGTERM):
-        signal(number, lambda *_: stop.set())
+    stop = stop_asked()
     with Serving(configuration, place, web) as serving:
         out.print(f"Agora is at {serving.url}", soft_wrap=True)
         out.print(f"Its operator enters, once and within ten minutes, by {serving.first_url}", soft_wrap=True)

@@ -12,6 +12,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from tracker import rotations
 from tracker.estimator import Pose
 from tracker.measurements import Matrix, TruePose
 
@@ -135,7 +136,7 @@ def truth_figures(estimate: Track, truth: Track, known: Known) -> Figures | None
 
 def turns(wxyz: Vector, wxyz_true: Vector) -> Vector:
     """Return the (n, 4) rotations in site that take true attitudes to others, the shorter way round."""
-    turn = products(wxyz, wxyz_true * np.array([1.0, -1.0, -1.0, -1.0]))
+    turn = rotations.multiply(wxyz, rotations.conjugate(wxyz_true))
     return np.asarray(turn * np.where(turn[:, :1] < 0.0, -1.0, 1.0))
 
 
@@ -167,7 +168,7 @@ def rpe_m(t_ns: NDArray[np.int64], error_m: Vector, apart_s: float = RPE_S) -> f
 
 def registration_px(estimate: Track, truth: Track) -> Figures:
     """Return how far off points ahead of the true camera are drawn."""
-    R_true, R_estimate = _matrices(truth.wxyz), _matrices(estimate.wxyz)
+    R_true, R_estimate = rotations.matrices(truth.wxyz), rotations.matrices(estimate.wxyz)
     figures: Figures = {}
     for distance_m in (20.0, 50.0):
         point = truth.p_m + distance_m * R_true[:, :, 0]
@@ -221,30 +222,3 @@ def _jitter(t_ns: NDArray[np.int64], error: Vector) -> float | None:
     """Return the RMS length of the part of an error, (n, d), above 1 Hz."""
     fast, told = fast_part(t_ns, error)
     return float(np.sqrt(np.sum(np.square(fast)) / np.sum(told))) if np.any(told) else None
-
-
-def products(a: Vector, b: Vector) -> Vector:
-    """Return the (n, 4) quaternion products of two (n, 4) rows of quaternions, wxyz."""
-    aw, ax, ay, az = a.T
-    bw, bx, by, bz = b.T
-    return np.stack(
-        [
-            aw * bw - ax * bx - ay * by - az * bz,
-            aw * bx + ax * bw + ay * bz - az * by,
-            aw * by - ax * bz + ay * bw + az * bx,
-            aw * bz + ax * by - ay * bx + az * bw,
-        ],
-        axis=1,
-    )
-
-
-def _matrices(wxyz: Vector) -> Vector:
-    w, x, y, z = wxyz.T
-    return np.stack(
-        [
-            np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], axis=1),
-            np.stack([2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)], axis=1),
-            np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], axis=1),
-        ],
-        axis=1,
-    )

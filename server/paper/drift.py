@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tracker import rotations
 from tracker.attitude import Madgwick
 from tracker.calibration import MEAN_SAMPLES, REST_BLOCK_S, RestCalibration, SampleMean, at_rest
 from tracker.measurements import ImuSample, Matrix, Vector3
-from tracker.score import Figures, between, products
+from tracker.score import Figures, between
 
 #: Standard gravity, in which the paper's table of offsets gives accelerations.
 G_M_S2 = 9.80665
@@ -153,7 +154,7 @@ def error_figures(attitudes: Attitudes, t_true_ns: NDArray[np.int64], wxyz_true:
     rows = np.searchsorted(attitudes.t_ns, t_true_ns).clip(1, len(attitudes.t_ns) - 1)
     inside = (t_true_ns >= attitudes.t_ns[0]) & (t_true_ns <= attitudes.t_ns[-1])
     estimate = _between(attitudes, rows, t_true_ns)[inside]
-    turn = products(estimate, wxyz_true[inside] * np.array([1.0, -1.0, -1.0, -1.0]))
+    turn = rotations.multiply(estimate, rotations.conjugate(wxyz_true[inside]))
     heading = 2.0 * np.arctan2(turn[:, 3], turn[:, 0])
     start = t_true_ns[inside] - t_true_ns[inside][0] < MEAN_S * 1e9
     at_start = np.angle(np.mean(np.exp(1j * heading[start])))

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from server.plots.style import BETTER, INK, WORSE, Picture, drawn, house_style, new_figure
-from tracker.calibrate import rotations
+from tracker import rotations
 from tracker.calibrate.camera_mount import CameraMount
 
 _AXES = ("forward (roll)", "left (nod)", "up (pan)")

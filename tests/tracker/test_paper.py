@@ -6,7 +6,7 @@ from math import nan
 import numpy as np
 import pytest
 
-from tracker import score
+from tracker import rotations, score
 from tracker.errors import UnknownEstimator
 from tracker.estimator import Estimator, Pose
 from tracker.estimators import ESTIMATORS, build
@@ -126,7 +126,7 @@ def test_truth_is_the_walk(walk: Walk, measurements: list[Measurement]) -> None:
     motion = walk.at(np.array([t_ns]))
     np.testing.assert_allclose(pose.p_site_m, motion.p_m[0], atol=1e-3)
     estimate = score.track([pose])
-    assert abs(float(np.trace(score._matrices(estimate.wxyz)[0].T @ motion.R_site_body[0])) - 3.0) < 1e-6
+    assert abs(float(np.trace(rotations.matrices(estimate.wxyz)[0].T @ motion.R_site_body[0])) - 3.0) < 1e-6
 
 
 def test_bad_measurements_are_outcomes(measurements: list[Measurement]) -> None:

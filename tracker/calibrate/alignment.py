@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tracker.calibrate import rotations
+from tracker import rotations
 from tracker.calibrate.gyro_track import GyroTrack
 from tracker.calibrate.turns import Turns
 from tracker.measurements import Matrix

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from tracker.calibrate import rotations
+from tracker import rotations
 from tracker.calibrate.board import Board, BoardView
 from tracker.calibrate.camera_lens import board_pose
 from tracker.calibrate.turns import Turns

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracker.calibrate import rotations
+from tracker import rotations
 from tracker.calibrate.alignment import Alignment, align, rough
 from tracker.calibrate.gyro_track import GyroTrack
 from tracker.calibrate.shutter import readout_s, without_shutter

@@ -4,8 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tracker import geometry
-from tracker.calibrate import rotations
+from tracker import geometry, rotations
 from tracker.errors import InputError
 from tracker.measurements import ImuSample, Matrix
 

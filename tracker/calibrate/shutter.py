@@ -5,8 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tracker import lens, two_view
-from tracker.calibrate import rotations
+from tracker import lens, rotations, two_view
 from tracker.calibrate.alignment import Alignment
 from tracker.calibrate.gyro_track import GyroTrack
 from tracker.calibrate.turns import PointPair, disagreement_px, times_of

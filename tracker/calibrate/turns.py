@@ -5,8 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracker import lens, two_view
-from tracker.calibrate import rotations
+from tracker import lens, rotations, two_view
 from tracker.geometry import wxyz_from_matrix
 from tracker.measurements import Matrix
 from tracker.rig import CameraModel

@@ -19,11 +19,13 @@ from tracker.geometry import exp as rotation_exp
 from tracker.geometry import log as log_rotation
 from tracker.measurements import Matrix, Vector3
 from tracker.precise.error_model import (
+    BG,
     FORGETTING,
     GPS_ERROR,
     GYRO_AXES,
     MAGNETIC,
     SIZE,
+    THETA,
     P,
     ProcessNoise,
     inertial_transition,
@@ -45,7 +47,7 @@ Observation: TypeAlias = tuple[Matrix, Blocks]
 """Residual, measured minus predicted, (m,), and its H."""
 _ITERATIONS = 5
 #: Yaw, and the bias, scale and lean of the gyroscope's z.
-_NORTH = [8, 11, 31, 32, 33]
+_NORTH = [THETA.stop - 1, BG.stop - 1, *range(GYRO_AXES.stop - 3, GYRO_AXES.stop)]
 
 
 @dataclass

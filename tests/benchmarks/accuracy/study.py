@@ -22,7 +22,7 @@ FOLDER = Path("build/accuracy")
 SEEDS = tuple(range(101, 117))
 PAPER = tuple(f"{sensors}/paper" for sensors in SENSORS)
 RIVALS = ("gtsam/batch", "gtsam/fixed-lag", "filterpy/imm", "vqf", "imufusion")
-#: Where others run beside the precise filter: what only it takes in (landmarks, the ground) changes nothing for them.
+#: Where raw GPS stands beside the precise filter: what only it takes in (landmarks, the ground) changes nothing for others.
 COMPARED = ("plain", "no-magnetometer", "understated", "outage", "disturbance", "turned-start")
 RIVALLED = ("plain", "outage")
 #: What measurements and figures are made by; tables and goals are not among it.

@@ -16,7 +16,7 @@ from tests.tracker.calibrate.board_walk import CAMERA, BoardWalk
 from tests.tracker.calibrate.test_magnetometer import planted, readings, tumbled
 from tests.tracker.calibrate.test_rest import at_rest, held_by_a_hand
 from tests.walks import write_walk
-from tracker.calibrate import rotations
+from tracker import rotations
 from tracker.errors import InputError
 from tracker.geometry import wxyz_from_matrix
 from tracker.log_writer import LogWriter

@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 
-from tracker.calibrate import rotations
+from tracker import rotations
 from tracker.calibrate.gyro_track import GyroTrack
 from tracker.measurements import ImuSample, Matrix
 

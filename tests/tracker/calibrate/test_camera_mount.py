@@ -11,7 +11,7 @@ from tests.tracker.calibrate.board_video import rotation
 from tests.tracker.calibrate.board_walk import CAMERA, BoardWalk
 from tests.tracker.calibrate.pan_video import PanVideo
 from tests.tracker.calibrate.rig_motion import RigMotion
-from tracker.calibrate import rotations
+from tracker import rotations
 from tracker.calibrate.alignment import align, rough
 from tracker.calibrate.board_turns import board_turns
 from tracker.calibrate.camera_mount import CameraMount, find_mount_by_board, find_mount_by_flow, unknown_camera

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from tests.tracker.calibrate.rig_motion import RigMotion
-from tracker.calibrate import rotations
+from tracker import rotations
 from tracker.calibrate.gyro_track import GyroTrack
 from tracker.errors import InputError
 from tracker.measurements import ImuSample
