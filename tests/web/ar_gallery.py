@@ -20,7 +20,7 @@ from server.showing import Showing
 from tests.ci.machine import find_browser
 from tests.conftest import BROWSER_FLAGS
 from tests.web.likeness import Picture
-from tests.web.pages import open_page
+from tests.web.pages import ALONE, open_page
 from tests.web.walk import ROOT, make_walk, position_of, showing_walk
 
 GOLDEN = ROOT / "tests" / "golden" / "ar"
@@ -35,9 +35,6 @@ PAGES = {
     "hmd.eyes": f"effort=surfaces&display=hmd&eyes=2&{_EVENING}",
 }
 """What each is asked for by."""
-_ALONE = """() => {
-    for (const panel of document.querySelectorAll("header, footer, aside, .panel")) panel.style.visibility = "hidden";
-}"""
 
 
 @dataclass(frozen=True)
@@ -73,7 +70,7 @@ def shots(browser: Browser, url: str) -> Iterator[Shot]:
             ar.until_drawn()
             ar.until("agora.stats().occluders")
             ar.ask("document.querySelector('#past').value = 100; document.querySelector('#past').oninput()")
-            ar.ask(_ALONE)
+            ar.ask(ALONE)
             if ar.ask("agora.session().playback.playing"):
                 ar.ask("document.querySelector('#play').click()")
                 ar.until("!agora.session().playback.playing")

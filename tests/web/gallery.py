@@ -20,7 +20,7 @@ from server.replay import ReplaySettings
 from server.showing import Showing
 from tests.ci.machine import find_browser
 from tests.conftest import BROWSER_FLAGS
-from tests.web.pages import ArPage
+from tests.web.pages import ALONE, ArPage
 from tests.web.walk import ROOT, WEB, write_log
 from tracker.log import Log
 
@@ -35,9 +35,6 @@ VIEWS = {
 }
 """Twelve places of the tour, by model."""
 TITLES = {"roman": "About AD 150", "today": "Today"}
-_ALONE = """() => {
-    for (const panel of document.querySelectorAll("header, footer, aside, .panel")) panel.style.visibility = "hidden";
-}"""
 
 
 @dataclass(frozen=True)
@@ -69,7 +66,7 @@ def shots(browser: Browser, url: str) -> Iterator[Shot]:
     for model, views in VIEWS.items():
         page.page.goto(f"{url}?model={model}")
         page.ask("agora.ready")
-        page.ask(_ALONE)
+        page.ask(ALONE)
         for view in views:
             page.ask("id => { const tour = document.querySelector('#tour'); tour.value = id; tour.onchange(); }", view)
             for suffix in ("", ".evidence"):

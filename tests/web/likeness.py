@@ -1,5 +1,7 @@
 """How like two pictures are, to the eye and not to the bit: other versions of a software renderer pass, other views do not."""
 
+from pathlib import Path
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +12,13 @@ MOST_DIFFERENCE = 8.0
 """Mean, of 255, once both pictures are small and blurred: another version of the software renderer stays far below."""
 LEAST_LIKENESS = 0.85
 """Of local structure, 1 for the same."""
+
+
+def kept(path: Path, make: str) -> Picture:
+    """Return a golden picture; `make` is the command that makes it."""
+    picture = cv2.imread(str(path), cv2.IMREAD_COLOR)
+    assert picture is not None, f"there is no golden picture {path.name}: {make}"
+    return np.asarray(picture, np.uint8)
 
 
 def small(picture: Picture) -> NDArray[np.float64]:

@@ -16,6 +16,10 @@ PATIENCE_S = 60.0
 """For a machine that does other things as well; nothing here is timed."""
 SIZE_PX = (640, 480)
 
+ALONE = """() => {
+    for (const panel of document.querySelectorAll("header, footer, aside, .panel")) panel.style.visibility = "hidden";
+}"""
+"""Hides what stands over the picture."""
 _READ = """([width, height]) => {
     const bytes = agora.readPixels(0, 0, width, height);
     let text = "";

@@ -5,13 +5,12 @@ After a change that is meant to be seen: `python -m tests.web.ar_gallery`, and l
 
 from collections.abc import Iterator
 
-import cv2
 import numpy as np
 import pytest
 from playwright.sync_api import Browser
 
 from tests.web.ar_gallery import GOLDEN, PAGES, Shot, shots, showing
-from tests.web.likeness import LEAST_LIKENESS, MOST_DIFFERENCE, Picture, difference, likeness
+from tests.web.likeness import LEAST_LIKENESS, MOST_DIFFERENCE, Picture, difference, kept, likeness
 
 pytestmark = pytest.mark.browser
 
@@ -28,9 +27,7 @@ def drawn(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterato
 
 def golden(name: str) -> Picture:
     """Return the picture that is kept."""
-    picture = cv2.imread(str(GOLDEN / f"{name}.webp"), cv2.IMREAD_COLOR)
-    assert picture is not None, f"there is no golden picture of {name}: python -m tests.web.ar_gallery"
-    return np.asarray(picture, np.uint8)
+    return kept(GOLDEN / f"{name}.webp", "python -m tests.web.ar_gallery")
 
 
 @pytest.mark.parametrize("name", PAGES)

@@ -10,7 +10,7 @@ from playwright.sync_api import Browser
 
 from server.showing import Showing
 from tests.web.pages import ArPage, open_page
-from tests.web.walk import BROKEN_FRAME, frame_at, position_of, showing_walk
+from tests.web.walk import BROKEN_FRAME, frame_at, position_of
 
 pytestmark = pytest.mark.browser
 
@@ -29,13 +29,6 @@ _SAMPLE = """(count) => new Promise((resolve) => {
     };
     look();
 })"""
-
-
-@pytest.fixture(scope="module")
-def showing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Showing]:
-    """The walk on a server, played by its truth again and again."""
-    with showing_walk(tmp_path_factory.mktemp("showing")) as showing:
-        yield showing
 
 
 @pytest.fixture(scope="module")

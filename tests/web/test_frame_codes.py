@@ -1,6 +1,5 @@
 """Picture and pose belong together while the rig turns fast, by what the pixels say; and any camera matrix is matched."""
 
-from collections.abc import Iterator
 from typing import Any
 
 import cv2
@@ -13,7 +12,6 @@ from server.showing import Showing
 from tests.web.injecting import T_START_NS, Injecting, frame_message, turned
 from tests.web.pages import SIZE_PX, open_page
 from tests.web.test_registration import centroids
-from tests.web.walk import showing_walk
 from tracker.rig import CameraModel
 
 pytestmark = pytest.mark.browser
@@ -48,13 +46,6 @@ _WATCH = """(count) => new Promise((resolve) => {
     };
     look();
 })"""
-
-
-@pytest.fixture(scope="module")
-def showing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Showing]:
-    """A server; its own pictures are not used."""
-    with showing_walk(tmp_path_factory.mktemp("codes")) as showing:
-        yield showing
 
 
 def coded(number: int) -> NDArray[np.uint8]:

@@ -5,14 +5,12 @@ After a change that is meant to be seen: `make gallery`, and look at docs/galler
 
 from collections.abc import Iterator
 
-import cv2
-import numpy as np
 import pytest
 from playwright.sync_api import Browser
 
 from assets.site import load_site
 from tests.web.gallery import GALLERY, GOLDEN, VIEWS, Shot, gallery, shots, showing_site
-from tests.web.likeness import LEAST_LIKENESS, MOST_DIFFERENCE, Picture, difference, likeness
+from tests.web.likeness import LEAST_LIKENESS, MOST_DIFFERENCE, Picture, difference, kept, likeness
 from tests.web.walk import ROOT
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -29,9 +27,7 @@ def drawn(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterato
 
 def golden(name: str) -> Picture:
     """Return the picture that is kept."""
-    picture = cv2.imread(str(GOLDEN / f"{name}.webp"), cv2.IMREAD_COLOR)
-    assert picture is not None, f"there is no golden picture of {name}: make gallery"
-    return np.asarray(picture, np.uint8)
+    return kept(GOLDEN / f"{name}.webp", "make gallery")
 
 
 @pytest.mark.parametrize("name", [*NAMES, *(f"{name}.evidence" for name in NAMES)])

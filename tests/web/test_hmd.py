@@ -10,7 +10,6 @@ from playwright.sync_api import Browser
 from server.showing import Showing
 from tests.web.pages import ArPage, open_page
 from tests.web.tampering import Tampering
-from tests.web.walk import showing_walk
 
 pytestmark = pytest.mark.browser
 
@@ -28,13 +27,6 @@ _MENU = (
     "[...document.querySelectorAll('.eye')].map((eye) => [...eye.querySelectorAll('li')].map((row) => row.textContent))"
 )
 _AT = "document.querySelector('.eye [aria-current=true]')?.textContent"
-
-
-@pytest.fixture(scope="module")
-def showing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Showing]:
-    """The walk on a server."""
-    with showing_walk(tmp_path_factory.mktemp("hmd")) as showing:
-        yield showing
 
 
 @pytest.fixture

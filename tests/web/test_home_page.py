@@ -10,20 +10,12 @@ from playwright.sync_api import Browser
 
 from server.showing import Showing
 from tests.web.pages import SIZE_PX, ArPage, Pixels, open_page
-from tests.web.walk import showing_walk
 
 pytestmark = pytest.mark.browser
 
 EMPTY = """() => {
     for (const panel of document.querySelectorAll("header, footer")) panel.style.visibility = "hidden";
 }"""
-
-
-@pytest.fixture(scope="module")
-def showing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Showing]:
-    """The walk on a server, with a square of plain volumes."""
-    with showing_walk(tmp_path_factory.mktemp("home")) as showing:
-        yield showing
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from assets.site import load_site
 from server.showing import Showing
 from tests.web.injecting import T_START_NS, Injecting, frame_message, turned
 from tests.web.pages import ArPage, open_page
-from tests.web.walk import ROOT, showing_walk
+from tests.web.walk import ROOT
 from tracker.rig import CameraModel
 
 pytestmark = pytest.mark.browser
@@ -33,13 +33,6 @@ _DECODED = """async (jpeg) => {
     for (let i = 0; i < data.length; i += 32768) text += String.fromCharCode(...data.subarray(i, i + 32768));
     return btoa(text);
 }"""
-
-
-@pytest.fixture(scope="module")
-def showing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Showing]:
-    """A server."""
-    with showing_walk(tmp_path_factory.mktemp("look")) as showing:
-        yield showing
 
 
 @pytest.fixture

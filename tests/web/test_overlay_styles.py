@@ -11,7 +11,7 @@ from playwright.sync_api import Browser, Page, WebSocketRoute
 from server.showing import Showing
 from server.wire import decode_frame, encode_frame, is_frame
 from tests.web.pages import ArPage, Pixels, open_page
-from tests.web.walk import position_of, showing_walk
+from tests.web.walk import position_of
 
 pytestmark = pytest.mark.browser
 
@@ -68,13 +68,6 @@ class Styled:
         pixels = self.ar.pixels()
         self.ar.ask("agora.setPast(1)")
         return pixels
-
-
-@pytest.fixture(scope="module")
-def showing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Showing]:
-    """The walk on a server, played by its truth."""
-    with showing_walk(tmp_path_factory.mktemp("styles")) as showing:
-        yield showing
 
 
 @pytest.fixture(scope="module")

@@ -14,7 +14,7 @@ from assets.render import Renderer
 from assets.site import load_site
 from server.showing import Showing
 from tests.web.pages import SIZE_PX, ArPage, Pixels, open_page
-from tests.web.walk import CORNER_PX, ROOT, make_scene, make_walk, position_of, showing_walk
+from tests.web.walk import CORNER_PX, ROOT, make_scene, make_walk, position_of
 
 pytestmark = pytest.mark.browser
 
@@ -34,13 +34,6 @@ APART_PX = 24.0
 """Targets nearer to one another than this would hide each other."""
 
 Points = NDArray[np.float64]
-
-
-@pytest.fixture(scope="module")
-def showing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Showing]:
-    """The walk on a server, played by its truth."""
-    with showing_walk(tmp_path_factory.mktemp("registration")) as showing:
-        yield showing
 
 
 @pytest.fixture(scope="module")
