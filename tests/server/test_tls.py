@@ -203,23 +203,26 @@ def test_serve_with_an_authority_of_its_own_brings_it_to_devices(tmp_path: Path)
     variables = {"AGORA_PORT": "0", "AGORA_DATA": str(tmp_path / "data"), "AGORA_WEB": str(tmp_path / "web")}
     command = [AGORA, "serve", "--tls-local"]
     with subprocess.Popen(command, env=os.environ | variables, text=True, stdout=subprocess.PIPE) as process:
-        assert process.stdout is not None
-        lines = [process.stdout.readline().strip() for _ in range(4)]
-        url, first, page, fingerprint = (line.split()[-1] for line in lines)
-        with httpx.Client(trust_env=False) as device:
-            until(lambda: _answers(device, page))
-            shown = device.get(page)
-            assert "<svg" in shown.text
-            assert "style=" not in shown.text, "the page's policy would not allow it"
-            assert fingerprint in shown.text
-            installed = tmp_path / "installed.pem"
-            installed.write_text(ssl.DER_cert_to_PEM_cert(device.get(f"{page}agora.crt").content))
-            assert device.get(page, headers={"Host": "evil.example"}).status_code == 403
-        with httpx.Client(verify=trusting(installed), trust_env=False) as device:
-            assert first.startswith(f"{url}enter?code=")
-            assert "Secure" in device.get(first).headers["set-cookie"]
-        process.send_signal(signal.SIGTERM)
-        assert process.wait(20) == 0
+        try:
+            assert process.stdout is not None
+            lines = [process.stdout.readline().strip() for _ in range(4)]
+            url, first, page, fingerprint = (line.split()[-1] for line in lines)
+            with httpx.Client(trust_env=False) as device:
+                until(lambda: _answers(device, page))
+                shown = device.get(page)
+                assert "<svg" in shown.text
+                assert "style=" not in shown.text, "the page's policy would not allow it"
+                assert fingerprint in shown.text
+                installed = tmp_path / "installed.pem"
+                installed.write_text(ssl.DER_cert_to_PEM_cert(device.get(f"{page}agora.crt").content))
+                assert device.get(page, headers={"Host": "evil.example"}).status_code == 403
+            with httpx.Client(verify=trusting(installed), trust_env=False) as device:
+                assert first.startswith(f"{url}enter?code=")
+                assert "Secure" in device.get(first).headers["set-cookie"]
+            process.send_signal(signal.SIGTERM)
+            assert process.wait(20) == 0
+        finally:
+            process.kill()
 
 
 def _answers(device: httpx.Client, url: str) -> bool:

@@ -92,12 +92,15 @@ def test_a_kill_loses_at_most_the_last_second(tmp_path: Path) -> None:
     with subprocess.Popen(
         [sys.executable, "-c", _WRITE_FOR_EVER, str(path)], stdout=subprocess.PIPE, text=True
     ) as rig_:
-        assert rig_.stdout is not None
-        t_ns = first_ns = int(rig_.stdout.readline())
-        while t_ns < first_ns + 2 * S:
-            t_ns = int(rig_.stdout.readline())
-        rig_.send_signal(signal.SIGKILL)
-        t_last_ns = max([t_ns, *(int(line) for line in rig_.stdout)])
+        try:
+            assert rig_.stdout is not None
+            t_ns = first_ns = int(rig_.stdout.readline())
+            while t_ns < first_ns + 2 * S:
+                t_ns = int(rig_.stdout.readline())
+            rig_.send_signal(signal.SIGKILL)
+            t_last_ns = max([t_ns, *(int(line) for line in rig_.stdout)])
+        finally:
+            rig_.kill()
     log = Log.open(path)
     samples = [m.t_ns for m in log.messages() if isinstance(m, ImuSample)]
     assert log.info.truncated
