@@ -1,6 +1,7 @@
 /** The evidence's colours: told apart by every kind of colour vision, and never the only carrier. */
 
 import { EVIDENCE, EVIDENCE_COLOURS, EVIDENCE_WORDS, parseEvidence } from "../../web/src/evidence";
+import { say } from "../../web/src/language/speech";
 
 type Rgb = readonly [number, number, number];
 
@@ -64,7 +65,7 @@ for (const [sight, rows] of Object.entries(SIGHT)) {
 }
 
 test("each level of evidence is said in words that begin with its name", () => {
-  for (const evidence of EVIDENCE) expect(EVIDENCE_WORDS[evidence].toLowerCase().startsWith(evidence)).toBe(true);
+  for (const evidence of EVIDENCE) expect(say(EVIDENCE_WORDS[evidence]).toLowerCase().startsWith(evidence)).toBe(true);
   expect(new Set(Object.values(EVIDENCE_WORDS)).size).toBe(3);
 });
 

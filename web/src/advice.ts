@@ -2,6 +2,7 @@
 
 import type { Style } from "./certainty";
 import { headingOf } from "./frames";
+import { say } from "./language/speech";
 import type { CameraPose } from "./wire";
 import { compassPoint, degreesText, headingSigma, horizontalSigma, metresText } from "./words";
 
@@ -15,15 +16,16 @@ const DEGREE = Math.PI / 180;
 /** Return how well the place is known. */
 export function placeWords({ covariance, isTruth }: CameraPose): string {
   const sigma_m = horizontalSigma(covariance);
-  return isTruth && sigma_m < EXACT_M ? "exactly" : `to about ${metresText(sigma_m)}`;
+  return isTruth && sigma_m < EXACT_M ? say("hud.exactly") : say("hud.to_about", { length: metresText(sigma_m) });
 }
 
 /** Return which way the visitor looks, and how well that is known. */
 export function headingWords({ T_site_cam, covariance, headingKnown, isTruth }: CameraPose): string {
-  if (!headingKnown) return "not known yet";
+  if (!headingKnown) return say("hud.unknown_yet");
   const point = compassPoint(headingOf(T_site_cam));
   const sigma_rad = headingSigma(covariance);
-  return isTruth && sigma_rad < EXACT_RAD ? `${point}, exactly` : `${point}, to ${degreesText(sigma_rad)}`;
+  if (isTruth && sigma_rad < EXACT_RAD) return say("hud.point_exactly", { point });
+  return say("hud.point_to", { point, angle: degreesText(sigma_rad) });
 }
 
 export interface Shown {
@@ -37,19 +39,15 @@ export interface Shown {
 /** Return why the square is shown as it is and what to do about it, or null where it is as it should be. */
 export function adviceOf({ style, nearEdge, pose, kind, aligning }: Shown): string | null {
   if (pose === null || style === "none" || aligning) return null;
-  if (nearEdge && kind === "live") return "Mind your step: there is an edge near you. The square steps back here.";
-  if (nearEdge) return "Near an edge: the square steps back here.";
+  if (nearEdge && kind === "live") return say("advice.edge_live");
+  if (nearEdge) return say("advice.edge");
   if (style === "locked" || !pose.headingKnown) return null;
   const [place_m, heading_rad] = [horizontalSigma(pose.covariance), headingSigma(pose.covariance)];
   if (style === "ghost") {
     const off = metresText(Math.hypot(place_m, USUAL_M * heading_rad));
-    if (kind === "replay") return `An outline: the square may be ${off} aside here.`;
-    return `An outline: the square may be ${off} aside. Align it, or walk on until I am surer.`;
+    return say(kind === "replay" ? "advice.outline" : "advice.outline_live", { off });
   }
   const turned = heading_rad / (8 * DEGREE) > place_m / 8;
-  if (kind === "replay")
-    return `Not drawn: the tracker does not know well enough where the visitor ${turned ? "looks" : "is"}.`;
-  if (turned)
-    return "I do not know well enough where you look: walk a few steps, or press Align and point out a landmark.";
-  return "I do not know well enough where you are: go where the sky is open, or press Align and show me on the plan.";
+  if (kind === "replay") return say(turned ? "advice.heading" : "advice.place");
+  return say(turned ? "advice.heading_live" : "advice.place_live");
 }

@@ -14,6 +14,7 @@ import type { Doubt } from "./certainty";
 import { element, tell } from "./dom";
 import type { Matrix4, Vector3 } from "./frames";
 import { headingOf } from "./frames";
+import { say } from "./language/speech";
 import type { Pair } from "./lens";
 import { SiteMap } from "./map";
 import { pixelAt, placeOf } from "./picture";
@@ -86,7 +87,7 @@ export class Align {
     this.button.onclick = () => this.turn(!this.on);
     element("aligned", HTMLButtonElement).onclick = () => this.turn(false);
     element("here", HTMLButtonElement).onclick = () => this.offerPlan();
-    element("take-back", HTMLButtonElement).onclick = () => this.send({ kind: "undo" }, "Taken back.");
+    element("take-back", HTMLButtonElement).onclick = () => this.send({ kind: "undo" }, say("align.taken_back"));
     canvas.addEventListener("pointerdown", (event) => this.pressed(event));
     canvas.addEventListener("pointermove", (event) => this.moved(event));
     canvas.addEventListener("pointerup", (event) => this.released(event));
@@ -123,7 +124,7 @@ export class Align {
     const sent = this.sent;
     this.sent = null;
     if (ok) this.host.announce(sent.words);
-    else this.host.announce(error ?? "The rig did not take that.");
+    else this.host.announce(error ?? say("align.refused"));
     if (ok && sent.before !== null) this.settling = { before: sent.before, t_ns: null };
     return true;
   }
@@ -199,7 +200,7 @@ export class Align {
       const far: Vector3 = [e + FAR_M * sight[0], n + FAR_M * sight[1], u + FAR_M * sight[2]];
       const point_site_m = this.host.modelPoint(sight) ?? far;
       const tap: Alignment = { kind: "tap", frame_id: frame.frameId, place_px: to, sigma_px, point_site_m };
-      if (this.send(tap, "The square is moved there.")) this.pointedAt(point_site_m, frame);
+      if (this.send(tap, say("align.moved"))) this.pointedAt(point_site_m, frame);
     }
     this.rest();
   }
@@ -212,15 +213,14 @@ export class Align {
     this.mark.style.left = `${box.left + across * box.width}px`;
     this.mark.style.top = `${box.top + down * box.height}px`;
     this.mark.hidden = false;
-    this.words.textContent =
-      this.landmarks.length > 0 ? "What is it that you tapped?" : "This site names no landmarks.";
+    this.words.textContent = say(this.landmarks.length > 0 ? "align.which" : "align.no_landmarks");
     const known = frame.pose?.headingKnown ? frame.pose.T_site_cam : null;
     const all = candidates(this.landmarks, pixel, frame.lens, known);
     const buttons = all.map(({ landmark, distance_m }) => {
       const button = document.createElement("button");
       button.type = "button";
       button.dataset["landmark"] = landmark.id;
-      button.textContent = distance_m === null ? landmark.name : `${landmark.name}, ${metresText(distance_m)}`;
+      button.textContent = landmarkWords(landmark.name, distance_m);
       button.onclick = () => this.choose(landmark);
       return button;
     });
@@ -229,7 +229,7 @@ export class Align {
     const more = document.createElement("button");
     more.type = "button";
     more.className = "more";
-    more.textContent = "Another one …";
+    more.textContent = say("align.another");
     more.hidden = rest.length === 0;
     more.onclick = () => {
       for (const button of rest) button.hidden = false;
@@ -243,7 +243,7 @@ export class Align {
     if (tap === null) return;
     const { frame, pixel, sigma_px } = tap;
     const asked: Alignment = { kind: "tap", frame_id: frame.frameId, place_px: pixel, sigma_px, point_site_m };
-    if (this.send(asked, `${name}: noted.`)) this.pointedAt(point_site_m, frame);
+    if (this.send(asked, say("align.noted", { name }))) this.pointedAt(point_site_m, frame);
     this.rest();
   }
 
@@ -256,14 +256,14 @@ export class Align {
 
   private offerPlan(): void {
     this.rest();
-    this.words.textContent = "Tap on the plan where you stand.";
+    this.words.textContent = say("align.tap_plan");
     this.stand.hidden = false;
     const { frame } = this.host;
     const pose = frame?.pose ?? null;
     const place: Place | null = pose && [pose.T_site_cam[3] ?? 0, pose.T_site_cam[7] ?? 0];
     const map = new SiteMap(this.stand, this.outlines, ([e_m, n_m], metresPerPixel, pointerType) => {
       const sigma_m = hereSigma(pointerType, metresPerPixel);
-      this.send({ kind: "here", e_m, n_m, sigma_m }, `You stand there, to about ${metresText(sigma_m)}: noted.`);
+      this.send({ kind: "here", e_m, n_m, sigma_m }, say("align.stand_there", { length: metresText(sigma_m) }));
       this.rest();
     });
     if (place) map.zoom(place, NEAR_M);
@@ -305,4 +305,8 @@ export class Align {
     const { width, height } = this.canvas.getBoundingClientRect();
     return 100 / Math.max(1e-6, Math.hypot((b[0] - a[0]) * width, (b[1] - a[1]) * height));
   }
+}
+
+function landmarkWords(name: string, distance_m: number | null): string {
+  return distance_m === null ? name : say("align.landmark_far", { name, far: metresText(distance_m) });
 }

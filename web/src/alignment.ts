@@ -7,6 +7,7 @@
 
 import type { Doubt } from "./certainty";
 import { compose, invertRigid, type Matrix4, transform, type Vector3 } from "./frames";
+import { say } from "./language/speech";
 import { idealAt, type Lens, type Pair, project } from "./lens";
 import type { Landmark } from "./site";
 import { degreesText, metresText } from "./words";
@@ -100,15 +101,22 @@ const BETTER = 0.9;
 export function improvementWords(before: Doubt, after: Doubt): string {
   const told: string[] = [];
   if (after.heading_rad < BETTER * before.heading_rad)
-    told.push(`the direction is known to ${degreesText(after.heading_rad)}${was(before.heading_rad, degreesText)}`);
+    told.push(
+      Number.isFinite(before.heading_rad)
+        ? say("align.better_heading_was", {
+            now: degreesText(after.heading_rad),
+            before: degreesText(before.heading_rad),
+          })
+        : say("align.better_heading", { now: degreesText(after.heading_rad) }),
+    );
   if (after.place_m < BETTER * before.place_m)
-    told.push(`your place to ${metresText(after.place_m)}${was(before.place_m, metresText)}`);
-  if (told.length > 0) return `Better: ${told.join(", ")}.`;
-  return "That changed little. If the square does not fit, take it back and try another landmark.";
-}
-
-function was(value: number, text: (value: number) => string): string {
-  return Number.isFinite(value) ? ` (${text(value)} before)` : "";
+    told.push(
+      Number.isFinite(before.place_m)
+        ? say("align.better_place_was", { now: metresText(after.place_m), before: metresText(before.place_m) })
+        : say("align.better_place", { now: metresText(after.place_m) }),
+    );
+  if (told.length > 0) return say("align.better", { what: told.join(", ") });
+  return say("align.little");
 }
 
 /** So many landmarks, spread as far as this, tell place and direction. */
@@ -117,10 +125,10 @@ const SPREAD_RAD = Math.PI / 2;
 
 /** Return what to do next, by the bearings of the landmarks that were pointed out so far. */
 export function adviceFor(bearings_rad: readonly number[]): string {
-  if (bearings_rad.length === 0) return "Tap a landmark in the picture, or drag the square to where it belongs.";
-  if (bearings_rad.length >= ENOUGH && spreadOf(bearings_rad) >= SPREAD_RAD) return "Well aligned. Press Done.";
-  if (spreadOf(bearings_rad) < SPREAD_RAD) return "Turn to one side and tap another landmark, far from the first.";
-  return "Tap one more landmark.";
+  if (bearings_rad.length === 0) return say("align.first");
+  if (bearings_rad.length >= ENOUGH && spreadOf(bearings_rad) >= SPREAD_RAD) return say("align.enough");
+  if (spreadOf(bearings_rad) < SPREAD_RAD) return say("align.turn");
+  return say("align.one_more");
 }
 
 /** Return the smallest angle that holds all bearings, radians. */

@@ -1,5 +1,6 @@
 /** The AR page: one session's pictures, each with the square drawn by the pose of that same picture. */
 
+import "./language/page";
 import { Raycaster, Vector3 as Vector } from "three";
 import { Align, type Host } from "./align";
 import type { Alignment } from "./alignment";
@@ -15,6 +16,7 @@ import { Guide } from "./guide";
 import { Hmd, worn } from "./hmd";
 import { Hud } from "./hud";
 import { watchInterruptions } from "./interruptions";
+import { languages, say } from "./language/speech";
 import { project } from "./lens";
 import { Look } from "./look";
 import { SiteMap } from "./map";
@@ -101,7 +103,7 @@ class Page {
     try {
       const answer = await fetch("/api/site");
       this.setClock(answer.headers.get("date"));
-      const site = parseSite(await answer.json(), navigator.languages);
+      const site = parseSite(await answer.json(), languages(navigator.languages));
       element("credit", HTMLElement).textContent = site.attribution;
       void this.learn(site);
       const levels = site.models["roman"];
@@ -145,7 +147,7 @@ class Page {
       return;
     }
     element("walk", HTMLElement).textContent = name;
-    document.title = `${name} · Agora`;
+    document.title = say("ar.title_of", { walk: name });
     const url = new URL(`/ws/view/${encodeURIComponent(name)}${location.search}`, location.href);
     url.protocol = url.protocol.replace("http", "ws");
     this.link = new Link(url.href, {
@@ -189,7 +191,7 @@ class Page {
       this.care.show(message.session);
       this.sharing.show(message.session, message.role);
     } else if (message?.type === "reply" && !this.align.replied(message.reply) && !message.reply.ok) {
-      this.hud.announce(message.reply.error ?? "That did not work.");
+      this.hud.announce(message.reply.error ?? say("ar.did_not_work"));
     }
   }
 
@@ -317,7 +319,7 @@ class Page {
     this.requests += 1;
     const name = `v${this.requests}`;
     if (this.link?.send({ type: "control", request_id: name, ...request })) return name;
-    this.hud.announce("There is no connection just now.");
+    this.hud.announce(say("ar.offline"));
     return null;
   }
 
@@ -378,7 +380,7 @@ class Page {
       },
       back: (longAway) => {
         this.lastPicture_ms &&= performance.now(); // none was missed but by not looking
-        if (longAway) this.hud.announce("Welcome back: these are the newest pictures.");
+        if (longAway) this.hud.announce(say("ar.back"));
       },
     });
     const { classList } = document.body;

@@ -1,6 +1,7 @@
 /** The playback bar: shows where a replay stands, and asks for changes. */
 
 import { element } from "./dom";
+import { say } from "./language/speech";
 import { clockText, estimatorChoices, type Request, requestOfKey, SPEEDS } from "./playback";
 import type { Session } from "./protocol";
 
@@ -41,9 +42,9 @@ export class Bar {
     this.form.hidden = session.playback === null;
     if (session.playback === null) return;
     this.play.dataset["playing"] = String(session.playback.playing);
-    const verb = session.playback.playing ? "Pause" : "Play";
+    const verb = say(session.playback.playing ? "bar.pause" : "bar.play");
     this.play.setAttribute("aria-label", verb);
-    this.play.title = `${verb} (space)`;
+    this.play.title = say("bar.key", { verb });
     this.seek.max = String(session.duration_s);
     this.length.textContent = clockText(session.duration_s);
     const { speed } = session.playback;
@@ -66,7 +67,7 @@ export class Bar {
     const text = clockText(position_s);
     if (this.clock.textContent === text) return;
     this.clock.textContent = text;
-    this.seek.setAttribute("aria-valuetext", `${text} of ${this.length.textContent}`);
+    this.seek.setAttribute("aria-valuetext", say("bar.place", { now: text, length: this.length.textContent ?? "" }));
   }
 
   private get playing(): boolean {
@@ -79,7 +80,7 @@ export class Bar {
     // options that are replaced would close a list that is open
     if (listed !== this.listed) {
       const options = choices.map(({ name, reason }) => {
-        const option = new Option(reason === null ? name : `${name}: ${reason}`, name);
+        const option = new Option(reason === null ? name : say("bar.unavailable", { name, reason }), name);
         option.disabled = reason !== null;
         return option;
       });

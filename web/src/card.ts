@@ -2,6 +2,7 @@
 
 import { element, tell } from "./dom";
 import { EVIDENCE_WORDS, parseEvidence } from "./evidence";
+import { say } from "./language/speech";
 import type { Square } from "./model";
 import type { Monument, Site } from "./site";
 import type { Thing } from "./thing";
@@ -33,7 +34,7 @@ export class Card {
     const evidence = part?.evidence ?? parseEvidence(monument.evidence);
     const words = element("card-evidence", HTMLElement);
     words.dataset["evidence"] = evidence ?? "";
-    const meaning = evidence === null ? null : (this.site.evidence[evidence] ?? EVIDENCE_WORDS[evidence]);
+    const meaning = evidence === null ? null : (this.site.evidence[evidence] ?? say(EVIDENCE_WORDS[evidence]));
     tell(words, meaning === null ? null : partWords(part) + meaning);
     const keys = part?.source?.split(", ").map((key) => this.site.sources[key] ?? key);
     const sources = (keys ?? monument.sources).join("; ");

@@ -1,6 +1,7 @@
 /** What a visitor chooses of the model on the AR page: how much of it, whose sun, the evidence's colours, rival reconstructions. DOM only. */
 
 import { element, tell } from "./dom";
+import { type Key, say } from "./language/speech";
 import { fillLegend } from "./legend";
 import type { Look, SunWish } from "./look";
 import type { Square } from "./model";
@@ -10,13 +11,13 @@ import { compassPoint } from "./words";
 
 const STEP = 10;
 /** Wishes of the sun, in the order of one button. */
-export const SUN_WISHES: readonly (readonly [SunWish, string])[] = [
-  ["now", "as it stands now"],
-  ["ancient", "at this hour in AD 150"],
-  [7.5, "in the morning"],
-  [12, "at noon"],
-  [17.5, "in the evening"],
-];
+const SUN_WISHES = [
+  ["now", "sun.now"],
+  ["ancient", "sun.ancient"],
+  [7.5, "sun.morning"],
+  [12, "sun.noon"],
+  [17.5, "sun.evening"],
+] as const satisfies readonly (readonly [SunWish, Key])[];
 
 export class Choices {
   private readonly past = element("past", HTMLInputElement);
@@ -36,7 +37,7 @@ export class Choices {
     this.past.oninput = () => this.apply();
     this.apply();
     this.sun.replaceChildren(
-      ...SUN_WISHES.map(([wish, words]) => new Option(words, String(wish), false, wish === look.sunWish)),
+      ...SUN_WISHES.map(([wish, words]) => new Option(say(words), String(wish), false, wish === look.sunWish)),
     );
     this.sun.onchange = () => this.wishSun(SUN_WISHES[this.sun.selectedIndex]?.[0] ?? "now");
     this.evidence.onchange = () => this.tint();
@@ -58,8 +59,15 @@ export class Choices {
     const words = element("sun-words", HTMLElement);
     const height_deg = sun === null ? null : Math.round((sun.elevation_rad * 180) / Math.PI);
     if (sun === null || height_deg === null) tell(words, null);
-    else if (height_deg < 0) tell(words, "The sun is down.");
-    else tell(words, `It stands in the ${compassPoint(sun.azimuth_rad)}, ${height_deg}° high.`);
+    else if (height_deg < 0) tell(words, say("sun.down"));
+    else
+      tell(
+        words,
+        say("sun.stands", {
+          point: compassPoint(sun.azimuth_rad),
+          angle: say("number.degrees", { value: height_deg }),
+        }),
+      );
   }
 
   /** Whether anything of the past is shown. */
@@ -78,16 +86,16 @@ export class Choices {
   /** Take the next wish of the sun; returns it in words. */
   nextSun(): string {
     const index = SUN_WISHES.findIndex(([wish]) => wish === this.look.sunWish);
-    const [wish, words] = SUN_WISHES[(index + 1) % SUN_WISHES.length] ?? ["now", ""];
+    const [wish, words] = SUN_WISHES[(index + 1) % SUN_WISHES.length] ?? SUN_WISHES[0];
     this.wishSun(wish);
-    return words;
+    return say(words);
   }
 
   /** Colour by evidence, or no longer; returns what is shown, in words. */
   toggleEvidence(): string {
     this.evidence.checked = !this.evidence.checked;
     this.tint();
-    return this.evidence.checked ? "Blue is attested, magenta inferred, yellow a guess" : "In its own colours";
+    return say(this.evidence.checked ? "evidence.colours" : "evidence.own_colours");
   }
 
   private wishSun(wish: SunWish): void {
@@ -104,7 +112,7 @@ export class Choices {
 
   private apply(): void {
     const share = Number(this.past.value);
-    this.past.ariaValueText = share === 0 ? "today alone" : `${share} percent of the square about AD 150`;
+    this.past.ariaValueText = share === 0 ? say("past.none") : say("past.share", { percent: share });
     // a screen reader tells of the slider only while it has the focus
     if (this.told) this.said.textContent = document.activeElement === this.past ? "" : this.past.ariaValueText;
     this.told = true;

@@ -1,5 +1,7 @@
 /** Whether this device's clock can be believed: beside the server's, which a rig sets by satellite or network. Pure. */
 
+import { say } from "./language/speech";
+
 /** Less than this moves the sun by less than its own width, and is what networks and whole seconds make. */
 const BELIEVED_S = 120;
 
@@ -14,12 +16,8 @@ export function clockOff(serverDate: string | null, now_ms: number): number {
 export function clockWords(off_s: number): string | null {
   if (off_s === 0) return null;
   const much = Math.abs(off_s);
-  const [count, unit] =
-    much < 5400
-      ? [Math.round(much / 60), "minute"]
-      : much < 172_800
-        ? [Math.round(much / 3600), "hour"]
-        : [Math.round(much / 86_400), "day"];
-  const direction = off_s > 0 ? "behind" : "ahead";
-  return `This device's clock is ${count} ${unit}${count === 1 ? "" : "s"} ${direction}: the sun is drawn by the rig's clock.`;
+  const direction = say(off_s > 0 ? "clock.behind" : "clock.ahead");
+  if (much < 5400) return say("clock.off_minutes", { count: Math.round(much / 60), direction });
+  if (much < 172_800) return say("clock.off_hours", { count: Math.round(much / 3600), direction });
+  return say("clock.off_days", { count: Math.round(much / 86_400), direction });
 }

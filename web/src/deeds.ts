@@ -3,22 +3,23 @@
 import type { Choices } from "./choices";
 import { element } from "./dom";
 import type { Deed } from "./hmd";
+import { say } from "./language/speech";
 import type { Request } from "./playback";
 import type { Session } from "./protocol";
 
-const CARE: Deed = { words: () => "I will take care", do: () => element("careful", HTMLButtonElement).click() };
+const CARE: Deed = { words: () => say("care.confirm"), do: () => element("careful", HTMLButtonElement).click() };
 
 /** Return what can be done now; before the notice of a live walk is confirmed, only that. */
 export function deedsOf(choices: Choices, session: Session | null, ask: (request: Request) => void): readonly Deed[] {
   if (!element("care", HTMLElement).hidden) return [CARE];
   const playing = session?.playback?.playing ?? null;
-  const play = { words: () => (playing ? "Pause" : "Play"), do: () => ask(playing ? PAUSE : PLAY) };
+  const play = { words: () => say(playing ? "bar.pause" : "bar.play"), do: () => ask(playing ? PAUSE : PLAY) };
   return [
-    { words: () => (choices.isPast ? "Today" : "AD 150"), do: () => choices.toggle() },
-    { words: () => "Sun", do: () => `The sun ${choices.nextSun()}` },
-    { words: () => "How sure", do: () => choices.toggleEvidence() },
+    { words: () => say(choices.isPast ? "time.today" : "time.ancient"), do: () => choices.toggle() },
+    { words: () => say("deed.sun"), do: () => say("sun.said", { when: choices.nextSun() }) },
+    { words: () => say("deed.evidence"), do: () => choices.toggleEvidence() },
     ...(playing === null ? [] : [play]),
-    { words: () => "Leave", do: leave },
+    { words: () => say("deed.leave"), do: leave },
   ];
 }
 

@@ -1,5 +1,7 @@
 /** Elements of the page by id. */
 
+import { say } from "./language/speech";
+
 /** Return the element of that id and kind; a page without it is a mistake of ours. */
 export function element<T extends HTMLElement>(id: string, kind: new () => T): T {
   const found = document.getElementById(id);
@@ -16,10 +18,7 @@ export function tell(target: HTMLElement, text: string | null): void {
 /** Whether this browser can draw; where it cannot, say so in the page. */
 export function canDraw(notice: HTMLElement): boolean {
   if (document.createElement("canvas").getContext("webgl2")) return true;
-  tell(
-    notice,
-    "This browser cannot draw in three dimensions (WebGL 2): switch hardware acceleration on, or use another browser.",
-  );
+  tell(notice, say("trouble.no_webgl"));
   return false;
 }
 

@@ -1,5 +1,7 @@
 /** How well the parts of a model are known, in words and in colours. Pure. */
 
+import type { Key } from "./language/speech";
+
 export type Evidence = "attested" | "inferred" | "hypothetical";
 
 export const EVIDENCE: readonly Evidence[] = ["attested", "inferred", "hypothetical"];
@@ -11,11 +13,12 @@ export const EVIDENCE_COLOURS: Readonly<Record<Evidence, string>> = {
   hypothetical: "#ffd75e",
 };
 
-export const EVIDENCE_WORDS: Readonly<Record<Evidence, string>> = {
-  attested: "Attested: it stands, or was excavated.",
-  inferred: "Inferred: from its plan, its fragments, or buildings like it.",
-  hypothetical: "Hypothetical: one way it may have been.",
-};
+/** What each means, where a site does not say it in its own words. */
+export const EVIDENCE_WORDS = {
+  attested: "evidence.attested",
+  inferred: "evidence.inferred",
+  hypothetical: "evidence.hypothetical",
+} as const satisfies Readonly<Record<Evidence, Key>>;
 
 /** Read a level of evidence; null for anything else. */
 export function parseEvidence(value: unknown): Evidence | null {

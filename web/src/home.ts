@@ -1,14 +1,15 @@
 /** The start page: the square as it stood and as it stands, to turn about and to stand in, and the walks that can be joined. */
 
+import "./language/page";
 import { Card } from "./card";
 import { canDraw, element, publishNothing, tell } from "./dom";
+import { languages, say } from "./language/speech";
 import { fillLegend } from "./legend";
 import { Square } from "./model";
 import { clockText } from "./playback";
 import { parseSessions } from "./protocol";
 import { type Monument, parseSite, type Site } from "./site";
 import { Stage } from "./stage";
-import { MODEL_FAILED } from "./words";
 
 const LOOK_AGAIN_MS = 3000;
 /** On a narrower screen the panel is folded at first, so that the square is seen. */
@@ -174,7 +175,7 @@ class Home {
 }
 
 function complain(error: unknown): void {
-  tell(element("notice", HTMLElement), MODEL_FAILED);
+  tell(element("notice", HTMLElement), say("trouble.model"));
   console.warn(error);
 }
 
@@ -187,7 +188,7 @@ function start(): void {
   let home: Home | null = null;
   const show = async (): Promise<void> => {
     try {
-      const site = parseSite(await (await fetch("/api/site")).json(), navigator.languages);
+      const site = parseSite(await (await fetch("/api/site")).json(), languages(navigator.languages));
       element("site", HTMLElement).textContent = site.name;
       element("credit", HTMLElement).textContent = site.attribution;
       home = new Home(site, new URLSearchParams(location.search));

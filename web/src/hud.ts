@@ -2,6 +2,7 @@
 
 import { adviceOf, headingWords, placeWords, type Shown } from "./advice";
 import { element, tell } from "./dom";
+import { say } from "./language/speech";
 import { FrameRate, PoseAge } from "./playback";
 import type { FrameMessage } from "./wire";
 import { motionColour, motionWords, type Situation, sentenceFor } from "./words";
@@ -39,14 +40,14 @@ export class Hud {
 
   /** Show the figures of the picture that is drawn now. */
   show(frame: FrameMessage | null, playing: boolean, now_ms: number): void {
-    this.set("rate", playing ? `${this.rate.at(now_ms).toFixed(0)} per second` : "paused");
+    this.set("rate", playing ? say("hud.rate_of", { count: this.rate.at(now_ms) }) : say("hud.paused"));
     const age_ms = this.age.at(now_ms);
     this.set("age", age_ms === null || !playing ? "–" : `${Math.round(age_ms)} ms`);
     const pose = frame?.pose ?? null;
-    this.set("position", pose ? placeWords(pose) : "not known yet");
-    this.set("heading", pose ? headingWords(pose) : "not known yet");
+    this.set("position", pose ? placeWords(pose) : say("hud.unknown_yet"));
+    this.set("heading", pose ? headingWords(pose) : say("hud.unknown_yet"));
     const model = pose?.motionModel ?? null;
-    this.set("motion", pose && model ? `${model}: ${motionWords(model, pose.estimator)}` : "none");
+    this.set("motion", pose && model ? motionText(model, pose.estimator) : say("hud.none"));
     this.cells["motion"]?.style.setProperty("--motion", motionColour(model));
     this.set("estimator-now", pose ? pose.estimator : "–");
   }
@@ -67,4 +68,8 @@ export class Hud {
     const cell = this.cells[id];
     if (cell && cell.textContent !== text) cell.textContent = text;
   }
+}
+
+function motionText(model: string, estimator: string): string {
+  return say("motion.with_name", { model, words: motionWords(model, estimator) });
 }

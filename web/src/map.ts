@@ -1,6 +1,7 @@
 /** The site's plan on the page: outlines, the visitor's place with its doubt, and where the picture looks. DOM only. */
 
 import type { Doubt } from "./certainty";
+import { say } from "./language/speech";
 import { conePath, type Frame, frameOf, middleOf, outlinePath, type Place, within } from "./plan";
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -23,7 +24,7 @@ export class SiteMap {
     this.svg = make("svg", "map") as SVGSVGElement;
     this.look(this.frame);
     this.svg.setAttribute("role", "img");
-    this.svg.setAttribute("aria-label", "Plan of the site, north up, with your place");
+    this.svg.setAttribute("aria-label", say("plan.label"));
     for (const outline of outlines) {
       const path = make("path", "outline");
       path.setAttribute("d", outlinePath(outline));

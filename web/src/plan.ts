@@ -1,5 +1,6 @@
 /** A plan of the site from above, north up: its outlines, the visitor's place and cone of view, and the way to the square. Pure. */
 
+import { type Key, say } from "./language/speech";
 import type { Pair } from "./lens";
 import { compassPoint, metresText } from "./words";
 
@@ -86,16 +87,25 @@ export function wayTo(from: Place, heading_rad: number | null, goal: Place): Way
   };
 }
 
+/** By the eighth of a turn, from behind over the left, ahead and the right to behind again. */
+const WAYS = [
+  "way.behind",
+  "way.behind_left",
+  "way.left",
+  "way.ahead_left",
+  "way.ahead",
+  "way.ahead_right",
+  "way.right",
+  "way.behind_right",
+  "way.behind",
+] as const satisfies readonly Key[];
+
 /** Return the way in words: "The square is 40 m ahead, to your left." */
 export function wayWords({ distance_m, bearing_rad, turn_rad }: Way): string {
   const far = metresText(distance_m);
-  if (turn_rad === null) return `The middle of the square is ${far} to the ${compassPoint(bearing_rad)}.`;
-  const side = turn_rad < 0 ? "left" : "right";
-  const off = Math.abs(turn_rad);
-  if (off < Math.PI / 8) return `The middle of the square is ${far} straight ahead.`;
-  if (off > (7 * Math.PI) / 8) return `The middle of the square is ${far} behind you.`;
-  const where = off < (3 * Math.PI) / 8 ? "ahead, to your" : off > (5 * Math.PI) / 8 ? "behind you, to the" : "to your";
-  return `The middle of the square is ${far} ${where} ${side}.`;
+  if (turn_rad === null) return say("way.to_the", { far, point: compassPoint(bearing_rad) });
+  const eighth = Math.round(turn_rad / (Math.PI / 4)) + 4;
+  return say(WAYS[eighth] ?? "way.behind", { far });
 }
 
 function round(value: number): string {

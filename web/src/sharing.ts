@@ -1,6 +1,7 @@
 /** Whether others see the camera's picture: the walker's switch, and a mark for everybody while it is on. */
 
 import { element } from "./dom";
+import { say } from "./language/speech";
 import type { Hello, Session } from "./messages.gen";
 
 export interface ShareRequest {
@@ -24,7 +25,7 @@ export class Sharing {
     this.shared = session.sharing;
     this.button.hidden = this.role !== "rig";
     this.button.setAttribute("aria-pressed", String(this.shared));
-    this.button.textContent = this.shared ? "Stop sharing the picture" : "Share the picture";
+    this.button.textContent = say(this.shared ? "share.stop" : "share.start");
     this.mark.textContent = markOf(session.sharing, this.role);
     this.mark.hidden = this.mark.textContent === "";
   }
@@ -33,6 +34,6 @@ export class Sharing {
 /** Return what is said beside the walk's name; nothing on a rig's own machine, where nobody else can watch. */
 export function markOf(sharing: boolean, role: Hello["role"]): string {
   if (role === "local") return "";
-  if (sharing) return "● Everybody who watches sees the picture";
-  return role === "rig" ? "" : "The walker keeps the picture private";
+  if (sharing) return say("share.on");
+  return role === "rig" ? "" : say("share.off");
 }

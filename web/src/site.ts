@@ -1,6 +1,7 @@
 /** What `GET /api/site` tells: the facts of a site, read leniently, every text in the visitor's language. No DOM in here. */
 
 import type { Vector3 } from "./frames";
+import { say } from "./language/speech";
 import type { Place } from "./plan";
 import { type Fields, fields, list, number, text_, texts } from "./protocol";
 
@@ -79,7 +80,7 @@ export function parseSite(value: unknown, languages: readonly string[] = []): Si
   const views = [site["default_view"], ...list(site["tour"])].filter(isObject);
   const sources = texts(site["sources"]);
   return {
-    name: inLanguage(site["names"], languages) ?? text_(site["name"], "The ancient square"),
+    name: inLanguage(site["names"], languages) ?? text_(site["name"], say("site")),
     models: parseModels(site["models"]),
     attribution: text_(site["attribution"], ""),
     eye_height_m: number(site["eye_height_m"], 1.65),

@@ -2,6 +2,7 @@
  * What the page says to a visitor: one plain sentence, and the numbers in words and units. Pure.
  */
 
+import { say, sayLength, sayNumber } from "./language/speech";
 import type { SensorHealth } from "./protocol";
 
 /** What of a sensor's health is put into words. */
@@ -36,81 +37,70 @@ const QUIET_AFTER_MS = 2500;
 
 /** Return what stands in the visitor's way, most pressing first, or null when all is well. */
 export function sentenceFor(s: Situation): string | null {
-  if (s.drawingLost) return "The browser has stopped drawing: it begins again by itself, or the page is loaded anew …";
-  if (s.connection === "refused")
-    return "This page may not watch this walk: open the link that its owner gives you, or show a token at /enter.";
-  if (s.connection === "other version") return "This page is of another version than the server: load it anew.";
+  if (s.drawingLost) return say("trouble.drawing");
+  if (s.connection === "refused") return say("trouble.refused");
+  if (s.connection === "other version") return say("trouble.version");
   if (s.connection === "no session") return noSession(s.asked);
-  if (s.connection === "lost") return "The connection is lost: trying again …";
-  if (s.connection === "connecting") return s.sinceOpened_ms > QUIET_AFTER_MS ? "Connecting to the walk …" : null;
+  if (s.connection === "lost") return say("trouble.lost");
+  if (s.connection === "connecting") return s.sinceOpened_ms > QUIET_AFTER_MS ? say("trouble.connecting") : null;
   if (s.sincePicture_ms === null && s.sinceOpened_ms > QUIET_AFTER_MS) return noPictures(s);
   if (s.sincePicture_ms !== null && s.sincePicture_ms > QUIET_AFTER_MS && s.playing) return noPictures(s);
-  if (s.garbled) return "What arrives cannot be read: is the server another version? Going on with what can be.";
+  if (s.garbled) return say("trouble.garbled");
   const trouble = Object.values(s.health).find((sensor) => sensor.trouble);
   if (trouble) return trouble.sentence;
-  if (s.model === "failed") return `${MODEL_FAILED} This page tries again by itself …`;
-  if (s.sincePicture_ms !== null && !s.hasPose)
-    return "Finding out where you are: the square appears when the position is known.";
-  if (s.hasPose && !s.headingKnown) return "Walk a few steps so that I can find north.";
-  if (s.model === "loading" && s.sinceOpened_ms > QUIET_AFTER_MS) return "The square is on its way …";
+  if (s.model === "failed") return say("trouble.model_again", { trouble: say("trouble.model") });
+  if (s.sincePicture_ms !== null && !s.hasPose) return say("trouble.no_pose");
+  if (s.hasPose && !s.headingKnown) return say("trouble.no_heading");
+  if (s.model === "loading" && s.sinceOpened_ms > QUIET_AFTER_MS) return say("trouble.loading");
   return s.notice;
 }
 
-const SENSORS: Readonly<Record<string, string>> = {
-  gps: "The GPS receiver",
-  imu: "The inertial unit",
-  camera: "The camera",
-};
+const SENSORS = { gps: "sensor.gps", imu: "sensor.imu", camera: "sensor.camera" } as const;
+
+function sensorWords(name: string): string {
+  const key = Object.entries(SENSORS).find(([known]) => known === name)?.[1];
+  return key === undefined ? say("sensor.other", { name }) : say(key);
+}
 
 /** Return what has happened to a rig's sensors between two states, or null: a trouble in its own words, or that one is back. */
 export function newsOf(before: Readonly<Record<string, Told>>, now: Readonly<Record<string, Told>>): string | null {
   for (const [name, sensor] of Object.entries(now)) {
     if (sensor.trouble && !before[name]?.trouble) return sensor.sentence;
-    if (!sensor.trouble && before[name]?.trouble) return `${SENSORS[name] ?? `The ${name}`} is back.`;
+    if (!sensor.trouble && before[name]?.trouble) return say("sensor.back", { sensor: sensorWords(name) });
   }
   return null;
 }
 
-/** Said on both pages. */
-export const MODEL_FAILED =
-  "The model of the square could not be loaded: reload the page, or build it anew with agora build.";
-
 function noSession(asked: string | null): string {
-  if (asked === null) return "Nobody is walking just now: this page starts by itself when a walk begins.";
-  return `There is no walk named ${asked} here: the start page lists those that there are.`;
+  return asked === null ? say("trouble.no_walk") : say("trouble.no_such_walk", { name: asked });
 }
 
 function noPictures(s: Situation): string {
   const camera = s.health["camera"];
   if (camera?.trouble) return camera.sentence;
-  if (s.kind === "live") return "No pictures are arriving: is the rig running?";
-  return s.playing ? "No pictures here: this part of the recording has none." : "Press play to start the walk.";
+  if (s.kind === "live") return say("trouble.no_pictures_live");
+  return s.playing ? say("trouble.no_pictures") : say("trouble.press_play");
 }
 
-/** What a motion model's two indices mean: position or walk first, then rotation. */
-interface MotionWords {
-  readonly position: readonly [string, string, string];
-  readonly rotation: readonly [string, string, string];
-}
-
-/** In the paper's filter they are coefficients of its velocities, 0, 1 and 2. */
-const COEFFICIENTS: MotionWords = {
-  position: ["position held", "position steady", "position doubled"],
-  rotation: ["turning held", "turning steady", "turning doubled"],
-};
+/** What a motion model's two indices mean, position or walk first, then rotation. In the paper's filter they are coefficients of its velocities, 0, 1 and 2. */
+const COEFFICIENTS = {
+  position: ["motion.position_held", "motion.position_steady", "motion.position_doubled"],
+  rotation: ["motion.turning_held", "motion.turning_steady", "motion.turning_doubled"],
+} as const;
 
 /** In `precise` they are what the walker does. */
-const ACTIVITIES: MotionWords = {
-  position: ["standing", "walking", "walking briskly"],
-  rotation: ["view still", "view turning", "view turning fast"],
-};
+const ACTIVITIES = {
+  position: ["motion.standing", "motion.walking", "motion.walking_fast"],
+  rotation: ["motion.view_still", "motion.view_turning", "motion.view_turning_fast"],
+} as const;
 
 /** Return `P1R2` in words, as its estimator means it: "position steady, turning doubled", or "walking, view turning fast". */
 export function motionWords(model: string | null, estimator: string): string {
   const match = /^P([012])R([012])$/.exec(model ?? "");
-  if (!match) return "no motion model";
+  if (!match) return say("motion.none");
   const words = estimator.endsWith("/precise") ? ACTIVITIES : COEFFICIENTS;
-  return `${words.position[Number(match[1])] ?? ""}, ${words.rotation[Number(match[2])] ?? ""}`;
+  const [position, rotation] = [Number(match[1]) as 0 | 1 | 2, Number(match[2]) as 0 | 1 | 2];
+  return say("motion.two", { position: say(words.position[position]), rotation: say(words.rotation[rotation]) });
 }
 
 /** Three lightnesses for position, three hues for turning; told apart without hue, and never the only carrier. */
@@ -134,33 +124,33 @@ export function motionColour(model: string | null): string {
 /** Return metres in the precision that means something: "4 cm", "0.8 m", "12 m". */
 export function metresText(metres: number): string {
   if (!Number.isFinite(metres)) return "–";
-  if (metres < 0.095) return `${Math.max(0, Math.round(metres * 100))} cm`;
-  return metres < 9.95 ? `${metres.toFixed(1)} m` : `${Math.round(metres)} m`;
+  if (metres < 0.095) return sayLength(Math.max(0, metres * 100), "centimeter");
+  return sayLength(metres, "meter", metres < 9.95 ? 1 : 0);
 }
 
 /** Return an angle given in radians as degrees: "0.4°", "12°". */
 export function degreesText(angle_rad: number): string {
   if (!Number.isFinite(angle_rad)) return "–";
   const degrees = (angle_rad * 180) / Math.PI;
-  if (degrees > 180) return "unknown";
-  return degrees < 9.95 ? `${degrees.toFixed(1)}°` : `${Math.round(degrees)}°`;
+  if (degrees > 180) return say("number.unknown");
+  return say("number.degrees", { value: sayNumber(degrees, degrees < 9.95 ? 1 : 0) });
 }
 
-const POINTS: readonly string[] = [
-  "north",
-  "north-east",
-  "east",
-  "south-east",
-  "south",
-  "south-west",
-  "west",
-  "north-west",
-];
+const POINTS = [
+  "compass.n",
+  "compass.ne",
+  "compass.e",
+  "compass.se",
+  "compass.s",
+  "compass.sw",
+  "compass.w",
+  "compass.nw",
+] as const;
 
 /** Return a heading, clockwise from north, as the nearest of eight points. */
 export function compassPoint(heading_rad: number): string {
   const eighth = Math.round((heading_rad / (2 * Math.PI)) * 8);
-  return POINTS[((eighth % 8) + 8) % 8] ?? "north";
+  return say(POINTS[((eighth % 8) + 8) % 8] ?? "compass.n");
 }
 
 /** Return the larger half-axis of the 1-sigma ellipse on the ground, metres, from a 6 x 6 covariance. */

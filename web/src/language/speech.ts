@@ -23,6 +23,11 @@ export function language(): string {
   return spoken;
 }
 
+/** Return languages in the order in which a text of the site is looked for: the one that is spoken, then what a browser wishes. */
+export function languages(browser: readonly string[]): readonly string[] {
+  return [spoken, ...browser];
+}
+
 /** Return a text in the language that is spoken. */
 export function say<K extends Key>(key: K, ...given: Given<K>): string {
   return fill(textOf(spoken, key), spoken, given[0] ?? {});
