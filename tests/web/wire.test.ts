@@ -93,6 +93,7 @@ test.each(poses)("golden pose $fields.seq reads as its fields say", ({ hex, fiel
     v_site_m_s: fields.velocity,
     headingKnown: (fields.flags & 2) !== 0,
     isTruth: (fields.flags & 4) !== 0,
+    soughtJustBefore: (fields.flags & 8) !== 0,
     motionModel: fields.motion_model,
   });
 });

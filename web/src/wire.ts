@@ -70,6 +70,7 @@ export interface PoseMessage {
   readonly v_site_m_s: Vector3;
   readonly headingKnown: boolean;
   readonly isTruth: boolean;
+  readonly soughtJustBefore: boolean;
   readonly motionModel: string | null;
 }
 
@@ -138,6 +139,7 @@ export function decodePose(bytes: ArrayBuffer): PoseMessage {
     v_site_m_s: [vx, vy, vz],
     headingKnown: (flags & HEADING_KNOWN) !== 0,
     isTruth: (flags & IS_TRUTH) !== 0,
+    soughtJustBefore: (flags & SOUGHT) !== 0,
     motionModel: motionModelName(view.getUint8(12), null),
   };
 }
