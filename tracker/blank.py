@@ -33,6 +33,14 @@ class BlankCamera:
         """Return the measurements that arrived at or after start_ns, in order of arrival."""
         return self._with_pictures(self.log.messages(start_ns=start_ns), start_ns or 0)
 
+    def pictures(self, at_ns: int) -> Iterator[Frame]:
+        """Yield the empty pictures alone, from the one on that was the newest at at_ns."""
+        info, period_ns = self.log.info, round(1e9 / RATE_HZ)
+        frame_id, picture = max(0, (at_ns - info.t_start_ns) // period_ns), blank_picture()
+        while (t_ns := info.t_start_ns + frame_id * period_ns) <= info.t_end_ns:
+            yield Frame(t_ns, t_ns, frame_id, picture)
+            frame_id += 1
+
     def _with_pictures(self, measurements: Iterable[Measurement], start_ns: int) -> Iterator[Measurement]:
         picture = blank_picture()
         begin_ns, period_ns = self.log.info.t_start_ns, round(1e9 / RATE_HZ)

@@ -5,7 +5,7 @@ What does not parse is left out and counted; none of it ends the reading.
 
 from bisect import bisect_left, bisect_right
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
@@ -128,6 +128,19 @@ class Log:
         """
         return _Reading(self, start_ns or 0, camera, truth).measurements()
 
+    def pictures(self, at_ns: int) -> Iterator[Frame]:
+        """Yield the pictures alone, from the one on that was the newest at at_ns; from the first, where none was there yet."""
+        times_ns = self._contents.camera_times_ns
+        newest = bisect_right(times_ns, at_ns) - 1
+        start_ns = times_ns[newest] if newest >= 0 else 0
+        reading = _Reading(self, start_ns, camera=True, truth=False, others=False)
+        return (picture for picture in reading.measurements() if isinstance(picture, Frame))
+
+    @property
+    def picture_times_ns(self) -> Sequence[int]:
+        """When pictures arrived, in order, those too that do not decode."""
+        return self._contents.camera_times_ns
+
 
 class _Contents:
     """What the one pass over a newly opened file finds."""
@@ -214,15 +227,17 @@ class _Contents:
 class _Reading:
     """One pass over a log."""
 
-    def __init__(self, log: Log, start_ns: int, camera: bool, truth: bool) -> None:
+    def __init__(self, log: Log, start_ns: int, camera: bool, truth: bool, *, others: bool = True) -> None:
         self._container, self._contents, self._start_ns = log._container, log._contents, start_ns
-        self._skipped = log.skipped = Counter(log._container.damage)
+        self._skipped = Counter(log._container.damage)
+        if others:
+            log.skipped = self._skipped  # what reads pictures alone tells nothing of the log
         if log.info.truncated:
             self._skipped["truncated"] += 1
         self._wanted = {
             topic
             for topic, (_, sensor) in TOPICS.items()
-            if sensor and (camera or sensor != "frames") and (truth or sensor != "truth")
+            if sensor and (camera if sensor == "frames" else others and (truth or sensor != "truth"))
         } - ({"/gps/fix", "/gps/vel"} if log._contents.speaks_nmea else {NMEA})
         R_body_imu = log.rig.T_body_imu[:3, :3]
         self._R_body_imu = None if np.array_equal(R_body_imu, np.eye(3)) else R_body_imu

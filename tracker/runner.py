@@ -29,6 +29,12 @@ from tracker.said import refusal_words
 _READ_AHEAD = 200
 #: How long a wait may last before it looks whether it should end.
 _LOOK_UP_S = 0.1
+#: Work ahead is done in pieces of at least this; after each, the processor is others' for as long as that took.
+_PIECE_NS = 4_000_000
+#: How soon the longest of them is forgotten.
+_FORGET = 0.98
+#: A seek that takes longer shows its picture without a pose meanwhile.
+_PATIENCE_NS = 100_000_000
 #: A playback later than this has lost its time for good and goes on from where it is, instead of racing after the clock.
 _LATEST_NS = 300_000_000
 
@@ -90,6 +96,10 @@ class ReadAhead:
         self.close()
         self._thread = SensorThread(self._recording.messages(start_ns=start_ns))
         return self._thread
+
+    def pictures(self, at_ns: int) -> Iterable[Frame]:
+        """Return the pictures alone; they are read when they are asked for."""
+        return self._recording.pictures(at_ns)
 
     def close(self) -> None:
         """End the reading."""
@@ -181,6 +191,8 @@ class Player:
         self._clock_ns = 0
         self._clock_log_ns = 0
         self._just_sought = False
+        self._rest_until_ns = 0
+        self._piece_ns = float(_PIECE_NS)
         self.error: BaseException | None = None
         """What ended the thread, where it was not `close`."""
         self._thread = Thread(target=self._run, name="fusion", daemon=True)
@@ -224,7 +236,7 @@ class Player:
             self.error = error
 
     def _turn(self) -> None:
-        """Obey a command, or play the next message when it is due, or wait a little for either."""
+        """Obey a command, or play the next picture when it is due, or work ahead, or wait a little."""
         t_next_ns = self._playback.t_next_ns
         if self._state.playing and t_next_ns is None:
             self._at_end()
@@ -232,6 +244,10 @@ class Player:
         wait_s = _LOOK_UP_S
         if self._state.playing and t_next_ns is not None:
             wait_s = (self._due_ns(t_next_ns) - monotonic_ns()) * 1e-9
+        if self._commands.empty() and not self._playback.is_whole:
+            if self._work_ahead(wait_s):
+                return
+            wait_s = min(wait_s, 1e-9 * _PIECE_NS)
         if wait_s > 0.0005 or not self._commands.empty():
             with suppress(Empty):
                 self._obey(*self._commands.get(timeout=max(0.0, min(wait_s, _LOOK_UP_S))))
@@ -240,12 +256,23 @@ class Player:
             self._set_clock()
         self._play()
 
+    def _work_ahead(self, spare_s: float) -> bool:
+        """Work at poses further on for a moment, where there is the time; return whether that was done."""
+        now_ns = monotonic_ns()
+        if now_ns < self._rest_until_ns or spare_s * 1e9 < self._piece_ns:
+            return False
+        until_ns = now_ns + _PIECE_NS
+        while monotonic_ns() < until_ns and not self._playback.is_whole:
+            self._playback.run_ahead()
+        took_ns = monotonic_ns() - now_ns
+        self._rest_until_ns = now_ns + 2 * took_ns
+        self._piece_ns = max(_FORGET * self._piece_ns, took_ns)
+        return True
+
     def _play(self) -> None:
-        t_ns = self._playback.t_next_ns
         shown = self._playback.step()
-        if t_ns is not None:
-            self._state = replace(self._state, position_s=(t_ns - self._start_ns) * 1e-9)
         if shown is not None:
+            self._state = replace(self._state, position_s=(shown.frame.t_recv_ns - self._start_ns) * 1e-9)
             self._hand_out(shown)
 
     def _hand_out(self, shown: Shown) -> None:
@@ -263,7 +290,7 @@ class Player:
 
     def _set_clock(self) -> None:
         self._clock_ns = monotonic_ns()
-        self._clock_log_ns = self._playback.t_next_ns or self._end_ns
+        self._clock_log_ns = self._start_ns + round(self._state.position_s * 1e9)
 
     def _change(self, **changes: object) -> None:
         self._state = replace(self._state, **changes)  # type: ignore[arg-type]
@@ -313,21 +340,27 @@ class Player:
             raise InputError(refused)
 
     def _seek(self, position_s: float) -> None:
-        """Jump: from the last checkpoint the estimator runs up to the place, and the picture there is shown."""
-        t_ns = self._start_ns + round(position_s * 1e9)
-        self._change(position_s=position_s, seeking=True)
-        self._playback.rewind_to(t_ns)
-        shown: Shown | None = None
-        while (t_next_ns := self._playback.t_next_ns) is not None and not self._stop.is_set():
-            if t_next_ns > t_ns and shown is not None:
-                break
-            shown = self._playback.step() or shown
+        """Jump: the picture of the place is shown with its pose, for which the estimator may have to run up to there."""
+        self._playback.go_to(self._start_ns + round(position_s * 1e9))
+        self._state = replace(self._state, position_s=position_s)
+        self._work_it_out()
+        shown = self._playback.step()
         self._just_sought = True
         if shown is not None:
             position_s = max(position_s, (shown.frame.t_recv_ns - self._start_ns) * 1e-9)
         self._change(position_s=position_s, seeking=False)
         if shown is not None:
             self._hand_out(shown)
+
+    def _work_it_out(self) -> None:
+        """Run the estimator up to the next picture, which is shown alone where that takes long."""
+        began_ns = monotonic_ns()
+        while not self._playback.is_known and not self._playback.is_whole and not self._stop.is_set():
+            self._playback.run_ahead()
+            if not self._state.seeking and monotonic_ns() - began_ns > _PATIENCE_NS:
+                self._change(seeking=True)
+                if (bare := self._playback.peek()) is not None:
+                    self._show(bare, self._state, True)
 
 
 def _number(value: object, what: str, least: float, most: float) -> float:

@@ -111,6 +111,17 @@ def test_pictures_survive(tmp_path: Path, video: str) -> None:
     assert not log.skipped
 
 
+@pytest.mark.parametrize("video", ["jpeg", "h264"])
+def test_pictures_alone_begin_with_the_newest(tmp_path: Path, video: str) -> None:
+    log = Log.open(_write(tmp_path / "walk.mcap", _walk(), video))
+    whole = [m for m in log.messages() if isinstance(m, Frame)]
+    assert list(log.picture_times_ns) == [frame.t_recv_ns for frame in whole]
+    for at_ns, first in ((0, 0), (START_NS + 1_555 * MS, 15), (whole[7].t_recv_ns, 7), (whole[-1].t_recv_ns + MS, 29)):
+        found = list(log.pictures(at_ns))
+        assert [f.frame_id for f in found] == list(range(first, 30))
+        np.testing.assert_array_equal(found[0].picture.gray(), whole[first].picture.gray())
+
+
 def test_reading_from_the_middle_is_the_end_of_reading_all(whole: Path) -> None:
     """A seek must not see other numbers."""
     log = Log.open(whole)
