@@ -1,6 +1,6 @@
 /** The AR page: one session's pictures, each with the square drawn by the pose of that same picture. */
 
-import "./language/page";
+import "./everyone";
 import { Raycaster, Vector3 as Vector } from "three";
 import { Align, type Host } from "./align";
 import type { Alignment } from "./alignment";

@@ -1,23 +1,20 @@
 /** The notice at the start of a live walk: who looks at the past still walks in the present. Confirmed once on each device. */
 
 import { element } from "./dom";
+import { keep, kept } from "./memory";
 import type { Session } from "./protocol";
 
 const CONFIRMED = "agora.care";
 
 export class Care {
   private readonly panel = element("care", HTMLElement);
-  private confirmed = remembered();
+  private confirmed = kept(CONFIRMED) === "yes";
 
   constructor() {
     element("careful", HTMLButtonElement).onclick = () => {
       this.confirmed = true;
       this.panel.hidden = true;
-      try {
-        localStorage.setItem(CONFIRMED, "yes");
-      } catch {
-        // a browser that keeps nothing asks again next time
-      }
+      keep(CONFIRMED, "yes");
     };
   }
 
@@ -27,13 +24,5 @@ export class Care {
     if (asks === !this.panel.hidden) return;
     this.panel.hidden = !asks;
     if (asks) element("careful", HTMLButtonElement).focus();
-  }
-}
-
-function remembered(): boolean {
-  try {
-    return localStorage.getItem(CONFIRMED) === "yes";
-  } catch {
-    return false;
   }
 }

@@ -1,6 +1,6 @@
 /** The start page: the square as it stood and as it stands, to turn about and to stand in, and the walks that can be joined. */
 
-import "./language/page";
+import "./everyone";
 import { Card } from "./card";
 import { canDraw, element, publishNothing, tell } from "./dom";
 import { languages, say } from "./language/speech";

@@ -8,6 +8,7 @@ export const en = {
   language: "Language",
   "language.name": "English",
   site: "The ancient square",
+  "theme.glare": "High contrast, for the sun",
 
   // what is measured
   "number.unknown": "unknown",

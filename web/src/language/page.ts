@@ -1,5 +1,6 @@
-/** The page in the visitor's language: imported first by every page, it fills what is marked `data-say`. DOM only. */
+/** The page in the visitor's language: when it is imported it fills what is marked `data-say`. DOM only. */
 
+import { keep, kept } from "../memory";
 import { chosenOf } from "./choice";
 import { isKey, LANGUAGES, language, nameOf, say, speak } from "./speech";
 
@@ -21,43 +22,32 @@ export function fillMarked(root: ParentNode): void {
     }
 }
 
-/** Offer the languages in every `<select class="language">`. */
-function offer(): void {
-  for (const menu of document.querySelectorAll<HTMLSelectElement>("select.language")) {
-    menu.replaceChildren(
-      ...LANGUAGES.map((code) => {
-        const option = new Option(nameOf(code), code, false, code === language());
-        option.lang = code;
-        return option;
-      }),
-    );
-    menu.setAttribute("aria-label", say("language"));
-    menu.onchange = () => change(menu.value);
-  }
+/** Return the menu of languages, with its label. */
+export function languageMenu(): HTMLElement {
+  const label = document.createElement("label");
+  const menu = document.createElement("select");
+  menu.className = "language";
+  menu.append(
+    ...LANGUAGES.map((code) => {
+      const option = new Option(nameOf(code), code, false, code === language());
+      option.lang = code;
+      return option;
+    }),
+  );
+  menu.onchange = () => change(menu.value);
+  label.append(say("language"), menu);
+  return label;
 }
 
 /** Take another language: the page begins anew, since texts are everywhere in it. */
 function change(code: string): void {
-  try {
-    localStorage.setItem(STORED, code);
-  } catch {
-    // a browser that keeps nothing is told by the address
-  }
+  keep(STORED, code);
   const url = new URL(location.href);
   url.searchParams.set("lang", code);
   location.replace(url);
 }
 
-function stored(): string | null {
-  try {
-    return localStorage.getItem(STORED);
-  } catch {
-    return null;
-  }
-}
-
 const asked = new URLSearchParams(location.search).get("lang");
-speak(chosenOf(LANGUAGES, asked, stored(), navigator.languages));
+speak(chosenOf(LANGUAGES, asked, kept(STORED), navigator.languages));
 document.documentElement.lang = language();
 fillMarked(document);
-offer();

@@ -6,6 +6,7 @@ export const tr: Catalogue = {
   language: "Dil",
   "language.name": "Türkçe",
   site: "Antik meydan",
+  "theme.glare": "Güneşte okunur, yüksek karşıtlık",
 
   "number.unknown": "bilinmiyor",
   "number.degrees": "{value}°",
@@ -57,7 +58,7 @@ export const tr: Catalogue = {
   "hud.none": "yok",
   "hud.unknown_yet": "henüz bilinmiyor",
   "hud.exactly": "tam olarak",
-  "hud.to_about": "yaklaşık {length} yanılma payıyla",
+  "hud.to_about": "yaklaşık ±{length}",
   "hud.point_exactly": "{point}, tam olarak",
   "hud.point_to": "{point}, ±{angle}",
 
