@@ -5,7 +5,9 @@ import numpy as np
 from assets.axes import Array
 
 SUN_AZIMUTH_RAD, SUN_ELEVATION_RAD = np.radians(212.0), np.radians(62.0)
-"""An hour after noon in early summer."""
+"""An hour after noon in spring."""
+SUN_UNIX_S = 1_777_115_280
+"""When it stands there at Ephesus, within a degree: 25 April 2026, 11:08 UTC."""
 SHADE_RADIUS_M, SHADE_CENTRE_M = 200.0, (-40.0, 0.0, 0.0)
 """The square of the site that shadows are drawn of."""
 

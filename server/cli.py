@@ -200,7 +200,10 @@ def simulate(
     dataset: Annotated[int, typer.Option(min=0, max=5, help="In the manner of the paper's dataset 1 to 5.")] = 0,
     plan: Annotated[
         Literal["chance", "demo"],
-        typer.Option("--walk", help="`demo` is the demo's: past temple, Prytaneion, Basilica and Odeon, with stops."),
+        typer.Option(
+            "--walk",
+            help="`demo` is the demo's: past temple, Prytaneion, Basilica and Odeon, with stops and landmarks tapped.",
+        ),
     ] = "chance",
     video: Annotated[Literal["h264", "jpeg"], typer.Option(help="How pictures are stored.")] = "h264",
     site: SiteFolder = SITE,
@@ -208,6 +211,7 @@ def simulate(
     """Simulate a visitor's walk across the site: IMU, magnetometer, GPS, camera and full truth, the same for the same seed."""
     from assets.terrain import build_terrain
     from assets.today import build_today
+    from server.pointing import DEMO_POINTINGS, pointed_out
     from server.simulation import write_walk
     from server.site_tour import tour_of
     from server.standing import origin_of
@@ -238,6 +242,7 @@ def simulate(
             scene=scene,
             video=video,
             progress=lambda done: bar.update(task, completed=done),
+            pointed=lambda walk: pointed_out(walk, DEMO_POINTINGS if plan == "demo" else (), place.landmarks),
         )
     out.print(f"{log}: {settings.duration_s:.0f} s, {size / 1e6:.1f} MB")
 

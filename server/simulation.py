@@ -1,6 +1,6 @@
 """`agora simulate`: the tracker's walk and the assets' renderer joined into one log."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from hashlib import sha256
 from heapq import merge
 from pathlib import Path
@@ -15,10 +15,12 @@ from assets.exposure import Exposure
 from assets.lens import Pinhole
 from assets.render import Renderer
 from assets.scene import Scene, content_of, expanded
+from assets.sun import SUN_UNIX_S
 from tracker.errors import InputError
 from tracker.gait import Ground
+from tracker.log import RECORDING
 from tracker.log_writer import LogWriter
-from tracker.measurements import Frame, Image, Matrix, Measurement
+from tracker.measurements import Frame, Image, Matrix, Measurement, Sighting
 from tracker.pictures import ArrayPicture
 from tracker.rig import CameraModel
 from tracker.simulate import START_NS, Walk, WalkSettings, default_rig, simulate
@@ -36,6 +38,7 @@ def write_walk(
     scene: Scene | None,
     video: Literal["jpeg", "h264"],
     progress: Progress,
+    pointed: Callable[[Walk], Iterable[Sighting]] = lambda walk: (),
 ) -> int:
     """Write a simulated walk and return its size in bytes.
 
@@ -48,6 +51,7 @@ def write_walk(
         scene: What the camera sees; None for a walk without camera.
         video: How pictures are stored.
         progress: Called with the share that is done.
+        pointed: Returns what the visitor points out on the way, in order of arrival (`server.pointing`); with a camera only.
 
     Raises:
         InputError: The log cannot be written.
@@ -60,13 +64,20 @@ def write_walk(
         rig = type(rig)(rig.T_body_imu, rig.T_body_gps, rig.T_body_cam, None)
     kept = path.with_name(path.name + ".frames")
     pictures = _pictures(walk, scene, kept / _key(settings, scene), progress) if scene else iter(())
+    said = pointed(walk) if scene else ()
     part = path.with_name(path.name + ".part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with LogWriter(
-            part, rig, settings.origin, t_start_ns=START_NS, video=video, rate_hz=settings.camera_hz
+            part,
+            rig,
+            settings.origin,
+            t_start_ns=START_NS,
+            video=video,
+            rate_hz=settings.camera_hz,
+            metadata={RECORDING: {"utc_start_ns": str(SUN_UNIX_S * 1_000_000_000)}},
         ) as writer:
-            measurements: list[Iterator[Measurement]] = [simulate(walk), pictures]
+            measurements: list[Iterable[Measurement]] = [simulate(walk), pictures, said]
             for measurement in merge(*measurements, key=lambda m: m.t_recv_ns):
                 writer.write(measurement)
         part.replace(path)
