@@ -1,15 +1,19 @@
 """uvicorn's two protocols with a door before them: how many connections an address has, and how long a request's head may take.
 
 A request whose head never ends (slow loris) would else hold its connection for ever: uvicorn times only the pause between requests.
+
+A WebSocket's route finds a line of its own in its scope, see `line.py`.
 """
 
 import asyncio
 from typing import Any, ClassVar, cast
 
+from starlette.types import Scope
 from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
 from server.limits import Visitors
+from server.line import SocketLine, offer_line
 
 _TOO_MANY = b"HTTP/1.1 429 Too Many Requests\r\nRetry-After: 1\r\nConnection: close\r\nContent-Length: 0\r\n\r\n"
 _TOO_SLOW = b"HTTP/1.1 408 Request Timeout\r\nConnection: close\r\nContent-Length: 0\r\n\r\n"
@@ -83,12 +87,31 @@ class _Socket(WebSocketsSansIOProtocol):
     visitors: ClassVar[Visitors]
     peer: str | None = None
     """Whose place at the door it has."""
+    line: SocketLine | None = None
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Give the place back."""
         super().connection_lost(exc)
         _leave(self.visitors, self.peer)
         self.peer = None
+
+    def handle_connect(self, event: Any) -> None:
+        """Begin the route, which finds a line in its scope."""
+        super().handle_connect(event)
+        if not self.close_sent:
+            self.line = SocketLine(self)
+            offer_line(cast(Scope, self.scope), self.line)
+
+    def resume_writing(self) -> None:
+        """Note that all has gone."""
+        super().resume_writing()
+        if self.line is not None:
+            self.line.on_free()
+
+    def keepalive_timeout(self) -> None:
+        """Cut off a peer that answers no ping: it would not read a farewell either."""
+        super().keepalive_timeout()
+        self.transport.abort()
 
 
 def protocols(visitors: Visitors) -> dict[str, Any]:

@@ -2,12 +2,15 @@
 
 Frames are lossy: the slot holds the newest, and at most `MAX_UNACKNOWLEDGED` are under way, so a slow viewer sees fewer frames and
 never old ones. Text is reliable: a receiver that lets more than `MAX_TEXTS` pile up is closed. Nobody waits for anybody else.
+
+Whoever puts something in sends it in the same breath where the line is free: with a thousand receivers, a task that wakes for each
+would cost more than the sending.
 """
 
 import asyncio
 from collections import deque
 from collections.abc import Callable
-from typing import Final
+from typing import Final, Protocol
 
 from server.grants import ABILITIES, Role
 from server.traffic import Tally
@@ -19,6 +22,19 @@ MAX_TEXTS: Final = 256
 TOO_SLOW: Final = 1013
 
 
+class Line(Protocol):
+    """The way to one receiver."""
+
+    on_free: Callable[[], None]
+    """Called when the line has become free again."""
+
+    def free(self) -> bool:
+        """Whether all that was sent before has gone, so that what is sent now does not queue."""
+
+    def send(self, message: str | bytes) -> None:
+        """Send a message; never waits. Only while the line is free."""
+
+
 class Mailbox:
     """One receiver's outgoing mail."""
 
@@ -27,12 +43,12 @@ class Mailbox:
         self._frame: tuple[int, bytes, int | None] | None = None
         self._pose: tuple[bytes, int | None] | None = None
         self._unacknowledged: deque[int] = deque()
-        self._news = asyncio.Event()
+        self._line: Line | None = None
+        self._closed = asyncio.Event()
         self.tally = Tally()
         """What became of frames and poses; receivers of one session share it."""
         self.sent: Callable[[bool, int], None] = lambda is_frame, t_ns: None
         """Called when a frame, or a pose, has gone, with when it had arrived."""
-        self._under_way: tuple[bool, int | None] = (False, None)
         self.role: Role = "local"
         """Of whom it is for."""
         self.closing: tuple[int, str] | None = None
@@ -43,6 +59,12 @@ class Mailbox:
         """Whether it is for somebody who may see pictures that the walker does not share."""
         return "see" in ABILITIES[self.role]
 
+    def open(self, line: Line) -> None:
+        """Send what waits, and from now on everything, over a line; what was put in before that has waited."""
+        self._line = line
+        line.on_free = self._send
+        self._send()
+
     def put_text(self, text: str) -> None:
         """Queue a text message; too many of them close the mailbox."""
         if self.closing is not None:
@@ -51,58 +73,60 @@ class Mailbox:
             self.close(TOO_SLOW, "too many messages were waiting")
             return
         self._texts.append(text)
-        self._news.set()
+        self._send()
 
     def put_frame(self, frame_id: int, data: bytes, t_ns: int | None = None) -> None:
         """Replace the waiting frame; `t_ns` is when it arrived."""
         self.tally.frames_dropped += self._frame is not None
         self._frame = (frame_id, keep_seek(self._frame[1] if self._frame else None, data), t_ns)
-        self._news.set()
+        self._send()
 
     def put_pose(self, data: bytes, t_ns: int | None = None) -> None:
         """Replace the waiting pose; `t_ns` is when it arrived."""
         self.tally.poses_dropped += self._pose is not None
         self._pose = (data, t_ns)
-        self._news.set()
+        self._send()
 
     def acknowledge(self, frame_id: int) -> None:
         """Take note that the receiver is done with a frame and with those sent before it; an unknown one says nothing."""
         if frame_id in self._unacknowledged:
             while self._unacknowledged.popleft() != frame_id:
                 pass
-            self._news.set()
+            self._send()
 
     def close(self, code: int, reason: str, last: str | None = None) -> None:
         """End the mailbox: what waits is dropped, a last text still goes; the first reason stays."""
         if self.closing is None:
             self.closing = (code, reason)
             self._texts = deque() if last is None else deque([last])
-        self._news.set()
+            self._send()
+            self._closed.set()
 
-    async def next(self) -> str | bytes | None:
-        """Return what to send next, waiting for it: text before frames before poses; None once closed.
+    async def closed(self) -> None:
+        """Wait until it is closed."""
+        await self._closed.wait()
 
-        Who asks has sent what it was given before.
-        """
-        is_frame, t_ns = self._under_way
-        if t_ns is not None:
-            self._under_way = (False, None)
-            self.sent(is_frame, t_ns)
-        while True:
+    def _send(self) -> None:
+        """Send what may go, text before frames before poses, for as long as the line is free."""
+        line = self._line
+        while line is not None and line.free():
             if self._texts:
-                return self._texts.popleft()
-            if self.closing is not None:
-                return None
-            if self._frame is not None and len(self._unacknowledged) < MAX_UNACKNOWLEDGED:
-                (frame_id, data, t_ns), self._frame = self._frame, None
-                self._under_way = (True, t_ns)
+                line.send(self._texts.popleft())
+            elif self.closing is not None:
+                return
+            elif self._frame is not None and len(self._unacknowledged) < MAX_UNACKNOWLEDGED:
+                (frame_id, frame, t_ns), self._frame = self._frame, None
                 self._unacknowledged.append(frame_id)
                 self.tally.frames_sent += 1
-                return data
-            if self._pose is not None:
+                self._send_timed(line, frame, True, t_ns)
+            elif self._pose is not None:
                 (pose, t_ns), self._pose = self._pose, None
-                self._under_way = (False, t_ns)
                 self.tally.poses_sent += 1
-                return pose
-            self._news.clear()
-            await self._news.wait()
+                self._send_timed(line, pose, False, t_ns)
+            else:
+                return
+
+    def _send_timed(self, line: Line, data: bytes, is_frame: bool, t_ns: int | None) -> None:
+        line.send(data)
+        if t_ns is not None:
+            self.sent(is_frame, t_ns)

@@ -1,5 +1,9 @@
-"""Sessions: one rig, its newest frame and state, and the mailboxes of those who watch. For one event loop, no locks, no I/O."""
+"""Sessions: one rig, its newest frame and state, and the mailboxes of those who watch. For one event loop, no locks, no I/O.
 
+Frames and poses go out in the loop's next turn: of those that a rig's connection has piled up by then, the newest alone.
+"""
+
+import asyncio
 import re
 from collections.abc import Callable, Iterator
 from typing import Any, Final
@@ -10,7 +14,7 @@ from server.fanout import Mailbox
 from server.messages import ControlReply, ControlRequest, StateUpdate
 from server.privacy import without_picture
 from server.traffic import Tally, Traffic
-from server.wire import decode_frame, decode_pose, is_frame
+from server.wire import decode_frame, decode_pose, is_frame, keep_seek
 
 MAX_SESSIONS: Final = 16
 MAX_VIEWERS: Final = 64
@@ -36,6 +40,14 @@ _DEFAULTS: Final[dict[str, Any]] = {
     "health": {},
     "sharing": False,
 }
+_Later = Callable[[Callable[[], None]], object]
+
+
+def next_turn(call: Callable[[], None]) -> None:
+    """Call something in the event loop's next turn."""
+    asyncio.get_running_loop().call_soon(call)
+
+
 _AWAITED = "The rig has not come yet."
 _LEFT = "The rig has left: what is shown is the last that it sent."
 
@@ -48,9 +60,10 @@ class Session:
         name: str,
         max_viewers: int = MAX_VIEWERS,
         sent: Callable[[bool, int], None] = lambda is_frame, t_ns: None,
+        later: _Later = next_turn,
     ) -> None:
         self.name = name
-        self._max_viewers, self._sent = max_viewers, sent
+        self._max_viewers, self._sent, self._later = max_viewers, sent, later
         self.frames = 0
         """Frames that came from the rig."""
         self.t_frame_ns: int | None = None
@@ -72,6 +85,9 @@ class Session:
         self._hidden: bytes | None = None
         """That frame without its picture, once somebody needed it."""
         self._pose: bytes | None = None
+        self._new_frame: tuple[int, bytes, int] | None = None
+        """What is to go out in the next turn: id, frame and when it came."""
+        self._new_pose: tuple[bytes, int] | None = None
         self._pending: dict[str, tuple[Mailbox, str]] = {}
         self._requests = 0
 
@@ -127,22 +143,24 @@ class Session:
 
     def take_binary(self, data: bytes, t_ns: int) -> None:
         """Take a rig's frame or pose and hand it to every viewer; `MalformedMessage` where it is neither."""
+        goes_already = self._new_frame is not None or self._new_pose is not None
         if is_frame(data):
             meta = decode_frame(data)[0]
+            data = keep_seek(self._new_frame[1] if self._new_frame else None, data)
             self._frame, self.t_frame_ns = (meta.frame_id, data), t_ns
+            self._new_frame = (meta.frame_id, data, t_ns)
             self._hidden = None
             self.frames += 1
             if meta.pose_valid:
                 self.t_pose_ns = t_ns
-            for viewer in self.viewers:
-                self._show(viewer, t_ns)
         else:
             decode_pose(data)
             self._pose, self.t_pose_ns = data, t_ns
+            self._new_pose = (data, t_ns)
             self.poses += 1
-            for viewer in self.viewers:
-                viewer.put_pose(data, t_ns)
         self.received_bytes += len(data)
+        if not goes_already:
+            self._later(self._fan_out)
 
     def expect(self, fields: dict[str, Any]) -> None:
         """Note what is known of a rig that has not come yet (see `messages.SessionFields`)."""
@@ -195,6 +213,16 @@ class Session:
         if self._rig is not None:
             self._rig.close(code, reason)
 
+    def _fan_out(self) -> None:
+        """Hand the newest frame and the newest pose to every viewer."""
+        frame, pose, self._new_frame, self._new_pose = self._new_frame, self._new_pose, None, None
+        if frame is not None:
+            for viewer in self.viewers:
+                self._show(viewer, frame[2])
+        if pose is not None:
+            for viewer in self.viewers:
+                viewer.put_pose(*pose)
+
     def _show(self, viewer: Mailbox, t_ns: int | None = None) -> None:
         """Give a viewer the newest frame, as it may see it."""
         if self._frame is None:
@@ -237,14 +265,18 @@ class Sessions:
     """All sessions, oldest first."""
 
     def __init__(
-        self, now_ns: Callable[[], int], max_sessions: int = MAX_SESSIONS, max_viewers: int = MAX_VIEWERS
+        self,
+        now_ns: Callable[[], int],
+        max_sessions: int = MAX_SESSIONS,
+        max_viewers: int = MAX_VIEWERS,
+        later: _Later = next_turn,
     ) -> None:
         self.now_ns = now_ns
         """The clock that frames are stamped with."""
         self.traffic = Traffic()
         self.stopping = False
         """Whether goodbye was said: the server takes nobody any more."""
-        self._max_sessions, self._max_viewers = max_sessions, max_viewers
+        self._max_sessions, self._max_viewers, self._later = max_sessions, max_viewers, later
         self._sessions: dict[str, Session] = {}
 
     def __iter__(self) -> Iterator[Session]:
@@ -275,7 +307,7 @@ class Sessions:
             raise UnknownSession("A session's name is 1 to 64 letters, digits, dots, dashes or underscores.")
         if name not in self._sessions:
             self._make_room()
-            self._sessions[name] = Session(name, self._max_viewers, self._sent)
+            self._sessions[name] = Session(name, self._max_viewers, self._sent, self._later)
         return self._sessions[name]
 
     def say_goodbye(self) -> None:

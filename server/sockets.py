@@ -1,12 +1,11 @@
 """The two WebSockets: `/ws/rig/{session}` pushes, `/ws/view/{session}` watches. Messages go to `sessions.py`; no state here.
 
-Each connection has two tasks, one that reads and one that empties its mailbox; when either ends so does the other.
+Each connection has a task that reads; its mailbox is sent by whoever puts something in.
 """
 
 import asyncio
 import logging
-from collections.abc import Awaitable, Callable
-from contextlib import suppress
+from collections.abc import Callable
 from time import monotonic
 from typing import Final
 
@@ -19,6 +18,7 @@ from server.errors import MalformedMessage, ServerFull, TokenRefused, UnknownSes
 from server.fanout import Mailbox
 from server.grants import Grant
 from server.limits import Bucket
+from server.line import SocketLine, line_of
 from server.messages import Ack, ControlReply, encode, parse_from_viewer
 from server.sessions import Session, Sessions
 from server.wire import SUBPROTOCOL
@@ -39,6 +39,7 @@ OTHER_VERSION: Final = 4406
 _VIEWER_HZ: Final = 200.0
 _RIG_HZ: Final = 1000.0
 _BURST_S: Final = 5.0
+_FAREWELL_S: Final = 2.0
 _ONLY_WATCHES: Final = "Only the walker and operators control a walk; this token watches."
 _NOT_YOURS: Final = "Only the walker can share the camera's picture."
 _OTHER_VERSION: Final = f"This server speaks {SUBPROTOCOL} alone: take the same version on both sides."
@@ -167,11 +168,12 @@ async def _serve_viewer(
 
 async def _exchange(websocket: WebSocket, mailbox: Mailbox, take: _Take, left_s: float | None, most_hz: float) -> None:
     """Read and write until the peer leaves, sends what is malformed or too much, its time is over, or the mailbox is closed."""
-    loop = asyncio.get_running_loop()
+    loop, line = asyncio.get_running_loop(), line_of(websocket.scope)
     end = None if left_s is None else loop.call_later(left_s, mailbox.close, FORBIDDEN, _EXPIRED)
+    mailbox.open(line)
     tasks = [
         asyncio.create_task(_read(websocket, mailbox, take, most_hz)),
-        asyncio.create_task(_write(websocket, mailbox)),
+        asyncio.create_task(mailbox.closed()),
     ]
     try:
         await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
@@ -185,8 +187,18 @@ async def _exchange(websocket: WebSocket, mailbox: Mailbox, take: _Take, left_s:
         if isinstance(result, Exception):
             raise result
     if mailbox.closing is not None:
-        with suppress(RuntimeError, WebSocketDisconnect):  # the peer may have left meanwhile
-            await websocket.close(mailbox.closing[0], _reason(mailbox.closing[1]))
+        await _hang_up(websocket, line, *mailbox.closing)
+
+
+async def _hang_up(websocket: WebSocket, line: SocketLine, code: int, why: str) -> None:
+    """Say why and close; a peer that reads nothing does not hear it, and must not hold its place for that."""
+    try:
+        async with asyncio.timeout(_FAREWELL_S):
+            await websocket.close(code, _reason(why))
+    except (RuntimeError, WebSocketDisconnect):  # the peer may have left meanwhile
+        pass
+    except TimeoutError:
+        line.cut()
 
 
 async def _read(websocket: WebSocket, mailbox: Mailbox, take: _Take, most_hz: float) -> None:
@@ -203,15 +215,6 @@ async def _read(websocket: WebSocket, mailbox: Mailbox, take: _Take, most_hz: fl
             take(message["bytes"] if text is None else text)
         except MalformedMessage as exc:
             mailbox.close(MALFORMED, str(exc))
-
-
-async def _write(websocket: WebSocket, mailbox: Mailbox) -> None:
-    with suppress(WebSocketDisconnect):
-        while (message := await mailbox.next()) is not None:
-            send: Awaitable[None] = (
-                websocket.send_text(message) if isinstance(message, str) else websocket.send_bytes(message)
-            )
-            await send
 
 
 def _speaks(websocket: WebSocket) -> bool:

@@ -1,6 +1,5 @@
 """`/metrics` as a Prometheus reader takes it: what came, what went, what was dropped, how long it took."""
 
-import asyncio
 from pathlib import Path
 from time import monotonic_ns
 
@@ -13,6 +12,7 @@ from server.metrics import Metrics
 from server.sessions import Sessions
 from server.traffic import BOUNDS_S, Durations
 from server.wire import encode_frame, encode_pose
+from tests.server.lines import Wire, at_once
 from tests.server.serving import rig, serving, text_of, until, until_closed, viewer
 from tests.server.wire_examples import TINY_JPEG, example_frame, example_pose
 
@@ -46,24 +46,18 @@ def frame(frame_id: int) -> bytes:
 
 
 def test_what_a_viewer_could_not_take_counts_as_dropped_and_the_rest_by_how_long_it_took(clock: Clock) -> None:
-    sessions, viewer = Sessions(clock), Mailbox()
+    sessions, viewer, wire = Sessions(clock, later=at_once), Mailbox(), Wire(room=1)
     session = sessions.open("walk")
     session.join(viewer)
-
-    async def play() -> None:
-        assert isinstance(await viewer.next(), str)
-        session.take_binary(frame(1), clock.ns)
-        session.take_binary(frame(2), clock.ns)
-        session.take_binary(encode_pose(example_pose()), clock.ns)
-        assert await viewer.next() == frame(2)
-        clock.ns += 4_000_000
-        assert isinstance(await viewer.next(), bytes)  # who asks has sent the frame
-        clock.ns += 60_000_000
-        session.end(1000, "over")
-        assert isinstance(await viewer.next(), str)
-        assert await viewer.next() is None
-
-    asyncio.run(play())
+    viewer.open(wire)
+    session.take_binary(frame(1), clock.ns)
+    session.take_binary(frame(2), clock.ns)
+    session.take_binary(encode_pose(example_pose()), clock.ns)
+    clock.ns += 4_000_000
+    wire.make_room(1)
+    clock.ns += 60_000_000
+    wire.make_room(1)
+    session.end(1000, "over")
     got = samples(sessions)
     assert got["agora_sessions"] == 1
     assert got["agora_frames_total|walk"] == 2
@@ -81,19 +75,12 @@ def test_what_a_viewer_could_not_take_counts_as_dropped_and_the_rest_by_how_long
 
 
 def test_what_a_late_joiner_gets_at_once_is_not_timed(clock: Clock) -> None:
-    sessions, viewer = Sessions(clock), Mailbox()
+    sessions, viewer = Sessions(clock, later=at_once), Mailbox()
     session = sessions.open("walk")
     session.take_binary(frame(1), clock.ns)
     clock.ns += 60_000_000_000
     session.join(viewer)
-
-    async def play() -> None:
-        await viewer.next()
-        assert await viewer.next() == frame(1)
-        viewer.close(1000, "over")
-        await viewer.next()
-
-    asyncio.run(play())
+    viewer.open(Wire())
     got = samples(sessions)
     assert got["agora_frames_sent_total|walk"] == 1
     assert got["agora_frame_fanout_seconds_count"] == 0

@@ -83,7 +83,9 @@ def test_the_rig_tracks_on_while_its_server_is_killed_and_sends_the_newest_first
     assert monotonic_ns() - state.pose.t_ns < 500_000_000
     t_back_ns = monotonic_ns()
     with server_process(tmp_path, port):
-        until(lambda: any(s["estimator"] for s in httpx.get(f"http://127.0.0.1:{port}/api/sessions").json()["sessions"]))
+        until(
+            lambda: any(s["estimator"] for s in httpx.get(f"http://127.0.0.1:{port}/api/sessions").json()["sessions"])
+        )
         with connect(f"ws://127.0.0.1:{port}/ws/view/walk", compression=None, proxy=None) as viewer:
             hello = json.loads(viewer.recv(5.0))
             messages = [viewer.recv(5.0) for _ in range(40)]

@@ -167,6 +167,18 @@ def test_a_stalled_viewer_delays_nobody(server: WebServer) -> None:
         assert 'agora_viewers{session="walk"} 2' in get(server, "/metrics").text
 
 
+def test_a_viewer_that_reads_nothing_loses_its_place_when_the_walk_ends(server: WebServer) -> None:
+    """It cannot hear the farewell, and the rest of what it was sent would wait for it for ever."""
+    large = TINY_JPEG + bytes(3_000_000)
+    operator = {"Authorization": f"Bearer {token('operator')}"}
+    with rig(server) as pushing, viewer(server, max_queue=1):
+        for i in range(6):
+            pushing.send(frame(i, large))
+        until(lambda: 'frames_total{session="walk"} 6' in get(server, "/metrics").text)
+        assert httpx.delete(f"{server.url}api/sessions/walk", headers=operator, trust_env=False).status_code == 204
+        until(lambda: not server.app.state.visitors.sockets._open)
+
+
 @pytest.mark.parametrize(
     "message", ["", "[]", "{", '{"type":"ack"}', '{"type":"ack","frame_id":-1}', "9" * 5000, b"AGF1"]
 )
