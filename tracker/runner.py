@@ -144,7 +144,7 @@ class VisionThread:
         self._thread.join()
 
 
-Action = Literal["play", "pause", "seek", "speed", "estimator", "say"]
+Action = Literal["play", "pause", "seek", "speed", "loop", "estimator", "say"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -318,6 +318,11 @@ class Player:
                 return False
             case "speed":
                 self._change(speed=_number(value, "speed", 0.1, 16.0))
+                return False
+            case "loop":
+                if not isinstance(value, bool):
+                    raise InputError("Looping is switched by true or false.")
+                self._change(looping=value)
                 return False
             case "seek":
                 self._seek(_number(value, "position", 0.0, (self._end_ns - self._start_ns) * 1e-9))

@@ -253,7 +253,16 @@ def test_commands(recorded: Recorded) -> None:
     seen = Sighting(0, 0, (1.0, 2.0, 3.0), (0.0, 0.0, 1.0), 0.01)
     with pytest.raises(InputError, match="gps-imu/cmm takes no alignment"):
         player.command("say", seen).result(10.0)
-    nonsense = (("seek", "soon"), ("seek", -1.0), ("speed", float("nan")), ("estimator", "kalman"), ("say", "here"))
+    assert player.command("loop", True).result(10.0) is False
+    assert player.state.looping
+    nonsense = (
+        ("loop", "yes"),
+        ("seek", "soon"),
+        ("seek", -1.0),
+        ("speed", float("nan")),
+        ("estimator", "kalman"),
+        ("say", "here"),
+    )
     for action, value in nonsense:
         with pytest.raises(InputError):
             player.command(action, value).result(10.0)  # type: ignore[arg-type]
