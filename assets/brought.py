@@ -6,10 +6,9 @@ A brought model keeps its shape; of its looks it keeps one colour per corner, fr
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 from shapely.geometry import MultiPoint, Polygon
 from shapely.geometry.polygon import orient
@@ -17,6 +16,9 @@ from shapely.geometry.polygon import orient
 from assets.axes import Array
 from assets.errors import SiteError
 from assets.records import Figure, Footprint, ModelFile
+
+if TYPE_CHECKING:
+    import trimesh  # half of what a command takes to start, and few sites bring models: loaded with the first one
 
 R_SITE_GLTF = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 """From glTF's axes (x east, y up, z south) to the site's (x east, y north, z up)."""
@@ -89,12 +91,14 @@ def measure(model: ModelFile, source: str, key: str, named_in: Path) -> Measured
     )
 
 
-def _loaded(file: Path, start: str) -> trimesh.Scene:
+def _loaded(file: Path, start: str) -> "trimesh.Scene":
+    from trimesh import load_scene
+
     try:
         with file.open("rb") as stream:
             if stream.read(4) != MAGIC:
                 raise SiteError(f"{start} is no GLB (binary glTF 2.0); export it as one file that ends in .glb.")
-        return trimesh.load_scene(file, file_type="glb", process=False)
+        return load_scene(file, file_type="glb", process=False)
     except OSError as exc:
         raise SiteError(f"{start} cannot be read ({exc.strerror}); put it into the site's folder.") from exc
     except SiteError:
@@ -103,15 +107,17 @@ def _loaded(file: Path, start: str) -> trimesh.Scene:
         raise SiteError(f"{start} is a broken GLB; export it again, without compression.") from exc
 
 
-def _placed(scene: trimesh.Scene) -> Iterator[tuple[trimesh.Trimesh, Array]]:
+def _placed(scene: "trimesh.Scene") -> Iterator[tuple["trimesh.Trimesh", Array]]:
+    from trimesh import Trimesh
+
     for name in scene.graph.nodes_geometry:
         T_gltf_part, geometry = scene.graph[name]
         mesh = scene.geometry[geometry]
-        if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces):
+        if isinstance(mesh, Trimesh) and len(mesh.faces):
             yield mesh, np.asarray(T_gltf_part, dtype=np.float64)
 
 
-def _piece(mesh: trimesh.Trimesh, T_gltf_part: Array, model: ModelFile) -> Piece:
+def _piece(mesh: "trimesh.Trimesh", T_gltf_part: Array, model: ModelFile) -> Piece:
     sin, cos = np.sin(model.heading_rad), np.cos(model.heading_rad)
     turn = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]]) @ R_SITE_GLTF
     linear = turn @ T_gltf_part[:3, :3]
@@ -127,7 +133,7 @@ def _piece(mesh: trimesh.Trimesh, T_gltf_part: Array, model: ModelFile) -> Piece
     )
 
 
-def _colours(mesh: trimesh.Trimesh) -> NDArray[np.uint8]:
+def _colours(mesh: "trimesh.Trimesh") -> NDArray[np.uint8]:
     """One linear colour per corner; white where the model has none."""
     visual: Any = mesh.visual
     picture = getattr(getattr(visual, "material", None), "baseColorTexture", None)
