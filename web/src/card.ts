@@ -15,11 +15,12 @@ export class Card {
   constructor(
     private readonly site: Site,
     private readonly square: () => Square | null,
+    choose: (monument: string, variant: string) => void,
   ) {
     element("card-close", HTMLButtonElement).onclick = () => this.show(null, null);
     this.menu.onchange = () => {
       if (!this.shown) return;
-      this.square()?.showVariant(this.shown.id, this.menu.value);
+      choose(this.shown.id, this.menu.value);
       this.argue(this.shown);
     };
   }
@@ -35,14 +36,11 @@ export class Card {
     const words = element("card-evidence", HTMLElement);
     words.dataset["evidence"] = evidence ?? "";
     const meaning = evidence === null ? null : (this.site.evidence[evidence] ?? say(EVIDENCE_WORDS[evidence]));
-    tell(words, meaning === null ? null : partWords(part) + meaning);
+    tell(words, meaning === null ? null : partWords(part, meaning));
     const keys = part?.source?.split(", ").map((key) => this.site.sources[key] ?? key);
     const sources = (keys ?? monument.sources).join("; ");
-    tell(element("card-source", HTMLElement), sources === "" ? null : `Source: ${sources}`);
-    tell(
-      element("card-review", HTMLElement),
-      monument.isReviewed ? null : "This text has not yet been reviewed by an archaeologist.",
-    );
+    tell(element("card-source", HTMLElement), sources === "" ? null : say("card.source", { sources }));
+    tell(element("card-review", HTMLElement), monument.isReviewed ? null : say("card.unreviewed"));
     this.offer(monument);
   }
 
@@ -60,8 +58,8 @@ export class Card {
   }
 }
 
-/** Return "The roof: " for `basilica_stoa/roof`; nothing for a monument as a whole. */
-function partWords(part: Thing | null): string {
+/** Return "The roof: Hypothetical …" for `basilica_stoa/roof`; the meaning alone for a monument as a whole. */
+function partWords(part: Thing | null, meaning: string): string {
   const name = part?.name.split("/")[1]?.replace(/_/g, " ");
-  return name === undefined ? "" : `The ${name}: `;
+  return name === undefined ? meaning : say("card.part", { part: name, meaning });
 }

@@ -3,23 +3,32 @@
 import { Mesh, type Object3D, Vector3 as Vector } from "three";
 import { MeshoptDecoder } from "three/addons/libs/meshopt_decoder.module.js";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+import { Ground } from "./browse/ground";
 import { Edges, type Triangle } from "./edges";
 import type { Vector3 } from "./frames";
 
-const MODEL = "today";
-
-/** Load a site's walkable surface and work out its edges. */
+/** Load a site's walkable surface of today and work out its edges. */
 export async function loadEdges(url: string): Promise<Edges> {
+  const { walkable, collision } = await load(url, "today");
+  return new Edges(walkable, collision);
+}
+
+/** Load the ground of one model, to walk on. */
+export async function loadGround(url: string, model: string): Promise<Ground> {
+  return new Ground((await load(url, model)).walkable);
+}
+
+async function load(url: string, model: string): Promise<Record<"walkable" | "collision", Triangle[]>> {
   const { scene } = await new GLTFLoader().setMeshoptDecoder(MeshoptDecoder).loadAsync(url);
   scene.updateMatrixWorld(true);
   const found = { walkable: [] as Triangle[], collision: [] as Triangle[] };
   scene.traverse((object) => {
     if (!(object instanceof Mesh)) return;
     const role = told(object, "role");
-    if (told(object, "model") !== MODEL || (role !== "walkable" && role !== "collision")) return;
+    if (told(object, "model") !== model || (role !== "walkable" && role !== "collision")) return;
     found[role].push(...trianglesOf(object));
   });
-  return new Edges(found.walkable, found.collision);
+  return found;
 }
 
 /** Return what a node, or one above it, says of itself. */

@@ -1,0 +1,46 @@
+/** The start page: the virtual square. */
+
+import "../language/page";
+import { canDraw, element, publishNothing, tell } from "../dom";
+import type { Matrix4, Vector3 } from "../frames";
+import { languages, say } from "../language/speech";
+import { parseSite } from "../site";
+import { readAddress } from "./address";
+import { Browse } from "./browse";
+import { showWalks } from "./walks";
+
+let browse: Browse | null = null;
+
+async function show(): Promise<void> {
+  try {
+    const site = parseSite(await (await fetch("/api/site")).json(), languages(navigator.languages));
+    element("site", HTMLElement).textContent = site.name;
+    element("credit", HTMLElement).textContent = site.attribution;
+    const shown = readAddress(location.search, location.hash);
+    browse = new Browse(site, shown);
+    await browse.start(shown);
+  } catch (error) {
+    tell(element("notice", HTMLElement), say("trouble.model"));
+    console.warn(error);
+  }
+}
+
+/** Put `globalThis.agora` in place: what the page draws, for tests and support. */
+function publish(ready: Promise<void>): void {
+  const api = {
+    ready,
+    stats: (): unknown => browse?.stats ?? null,
+    project: (place_site_m: Vector3): readonly [number, number] | null => browse?.stage.pointOf(place_site_m) ?? null,
+    pose: (): {
+      readonly t_ns: null;
+      readonly frameId: null;
+      readonly T_site_cam: Matrix4;
+      readonly cov: null;
+    } | null => browse && { t_ns: null, frameId: null, T_site_cam: browse.stage.explorer.T_site_cam, cov: null },
+  };
+  Object.defineProperty(globalThis, "agora", { value: Object.freeze(api) });
+}
+
+void showWalks();
+if (canDraw(element("notice", HTMLElement))) publish(show());
+else publishNothing();

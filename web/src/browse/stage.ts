@@ -1,0 +1,288 @@
+/** The square as it is drawn on the start page, when something asks for it. three.js only. */
+
+import {
+  ACESFilmicToneMapping,
+  Fog,
+  Group,
+  PerspectiveCamera,
+  Raycaster,
+  Vector3 as Vector,
+  Vector2,
+  WebGLRenderer,
+} from "three";
+import { T_gltf_site, type Vector3 } from "../frames";
+import type { Square } from "../model";
+import { Sky } from "../sky";
+import type { Sun } from "../sun";
+import type { Thing } from "../thing";
+import { Controls } from "./controls";
+import { Explorer } from "./explorer";
+import type { Eye } from "./eye";
+import { Pace } from "./pace";
+import { Veil } from "./veil";
+import type { Leader, Turn, World } from "./world";
+
+/** `assets/levels.py` tells costs for this field of view. */
+const FIELD_DEG = 46.7;
+/** On a screen held upright the field of view grows upwards, so that at least this much is seen across. */
+const LEAST_WIDTH_DEG = 38;
+const FOG_M = [220, 900] as const;
+const FINEST = 2;
+/** So long after the last motion the finest picture is drawn. */
+const REST_MS = 180;
+
+interface Layer {
+  readonly square: Square;
+  readonly sky: Sky;
+  /** Whether its shadows are to be drawn anew. */
+  stale: boolean;
+}
+
+export class Stage implements World {
+  readonly renderer: WebGLRenderer;
+  readonly camera = new PerspectiveCamera(FIELD_DEG, 1, 0.15, 1500);
+  readonly guests = new Group();
+  readonly explorer: Explorer;
+  private readonly caster = new Raycaster();
+  private readonly layers = new Map<Square, Layer>();
+  private readonly turns = new Set<Turn>();
+  private readonly veil = new Veil();
+  private readonly pace = new Pace();
+  private below: Layer | null = null;
+  private above: Layer | null = null;
+  private share = 0;
+  private asked = false;
+  private resting: number | null = null;
+  private moved_ms = Number.NEGATIVE_INFINITY;
+  private drawn_ms: number | null = null;
+  private cost = { calls: 0, triangles: 0 };
+  private pictures = 0;
+  private readonly waiting: (() => void)[] = [];
+  /** Called when a square has changed: a finer ground may be a little higher. */
+  refined: () => void = () => undefined;
+
+  constructor(
+    readonly canvas: HTMLCanvasElement,
+    stick: HTMLElement,
+    eyeHeight_m: number,
+  ) {
+    this.renderer = new WebGLRenderer({ canvas, antialias: true });
+    this.renderer.toneMapping = ACESFilmicToneMapping;
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.autoUpdate = false;
+    this.renderer.info.autoReset = false;
+    this.renderer.autoClear = false;
+    this.guests.matrixAutoUpdate = false;
+    this.guests.matrix.set(...(T_gltf_site as Parameters<typeof this.guests.matrix.set>));
+    this.explorer = new Explorer(this.camera, canvas, new Controls(canvas, stick), eyeHeight_m, () => this.ask());
+    new ResizeObserver(() => this.fill()).observe(canvas);
+    this.fill();
+  }
+
+  /** What the last drawing cost, shadows left out. */
+  get stats(): Readonly<Record<"drawCalls" | "triangles" | "framesDrawn" | "fineness", number>> {
+    const { cost, pictures, pace } = this;
+    return { drawCalls: cost.calls, triangles: cost.triangles, framesDrawn: pictures, fineness: pace.fineness };
+  }
+
+  /** Whether all that was asked for is drawn, as finely as it can be. */
+  get isSettled(): boolean {
+    return !this.asked && this.resting === null && !this.explorer.isFlying;
+  }
+
+  get eye(): Eye {
+    return this.explorer.eye;
+  }
+
+  /** Draw this square, and over it, by that share, another one: from one time to the other. */
+  show(below: Square, above: Square | null = null, share = 0): void {
+    this.below = this.layer(below);
+    this.above = above && share > 0 ? this.layer(above) : null;
+    this.share = share;
+    const most = this.above && share > 0.5 ? this.above : this.below;
+    if (this.guests.parent !== most.square.scene) most.square.scene.add(this.guests);
+    this.ask();
+  }
+
+  /** Light a square by a sun at this place of the sky. */
+  shine(square: Square, sun: Sun): void {
+    const { sky } = this.layer(square);
+    sky.shine(sun);
+    square.shine(sun);
+  }
+
+  /** Forget a square that is shown no longer. */
+  drop(square: Square): void {
+    const layer = this.layers.get(square);
+    this.layers.delete(square);
+    layer?.sky.dispose();
+    square.dispose();
+  }
+
+  go(eye: Eye): void {
+    this.explorer.go(eye, "fly");
+  }
+
+  lead(leader: Leader | null, released?: () => void): void {
+    this.explorer.lead(leader, released);
+  }
+
+  eachPicture(turn: Turn): () => void {
+    this.turns.add(turn);
+    this.ask();
+    return () => this.turns.delete(turn);
+  }
+
+  ask(): void {
+    if (!this.asked) requestAnimationFrame((now_ms) => this.draw(now_ms));
+    this.asked = true;
+  }
+
+  /** Return what is drawn at a point of the window. */
+  at(point: { readonly clientX: number; readonly clientY: number }): Thing | null {
+    this.aim(point);
+    return this.front?.find(this.caster) ?? null;
+  }
+
+  /** Return the place that is drawn at a point of the window; null for the sky. */
+  placeAt(point: { readonly clientX: number; readonly clientY: number }): Vector3 | null {
+    this.aim(point);
+    const hit = this.front?.hit(this.caster);
+    return hit ? [hit.x, -hit.z, hit.y] : null;
+  }
+
+  /** Return the point of the window where a place is drawn, pixels; null where it lies behind. */
+  pointOf([e, n, u]: Vector3): readonly [number, number] | null {
+    const at = new Vector(e, u, -n).project(this.camera);
+    if (at.z > 1) return null;
+    return [((at.x + 1) / 2) * this.canvas.clientWidth, ((1 - at.y) / 2) * this.canvas.clientHeight];
+  }
+
+  /** Return the height of the drawn ground at a place of the plan; null where there is none. */
+  groundAt(e_m: number, n_m: number): number | null {
+    return this.front?.groundAt(e_m, -n_m, this.caster) ?? null;
+  }
+
+  /** Resolve when something has been drawn. */
+  drawn(): Promise<void> {
+    return this.pictures > 0 ? Promise.resolve() : new Promise((resolve) => this.waiting.push(resolve));
+  }
+
+  /** Draw now, at its finest, and return a copy. */
+  picture(): HTMLCanvasElement {
+    this.resize(1);
+    this.render();
+    const { width, height } = this.canvas;
+    const copy = document.createElement("canvas");
+    [copy.width, copy.height] = [width, height];
+    copy.getContext("2d")?.drawImage(this.canvas, 0, 0);
+    return copy;
+  }
+
+  private get front(): Square | null {
+    return (this.above && this.share > 0.5 ? this.above : this.below)?.square ?? null;
+  }
+
+  private layer(square: Square): Layer {
+    const known = this.layers.get(square);
+    if (known) return known;
+    const layer: Layer = { square, sky: new Sky(), stale: true };
+    this.layers.set(square, layer);
+    square.scene.add(layer.sky.mesh);
+    square.scene.fog = new Fog(0, ...FOG_M);
+    (square.scene.fog as Fog).color = layer.sky.horizon;
+    square.changed = () => {
+      layer.stale = true;
+      this.refined();
+      this.ask();
+    };
+    return layer;
+  }
+
+  private aim({ clientX, clientY }: { readonly clientX: number; readonly clientY: number }): void {
+    this.camera.updateMatrixWorld();
+    const { clientWidth, clientHeight } = this.canvas;
+    this.caster.setFromCamera(
+      new Vector2((2 * clientX) / clientWidth - 1, 1 - (2 * clientY) / clientHeight),
+      this.camera,
+    );
+  }
+
+  private fill(): void {
+    const { canvas, camera } = this;
+    camera.aspect = canvas.clientWidth / Math.max(1, canvas.clientHeight);
+    camera.fov = fieldOf(camera.aspect);
+    camera.updateProjectionMatrix();
+    this.ask();
+  }
+
+  private resize(fineness: number): void {
+    const { renderer, canvas } = this;
+    const ratio = Math.min(window.devicePixelRatio, FINEST) * fineness;
+    const size = new Vector2(canvas.clientWidth, canvas.clientHeight);
+    if (renderer.getPixelRatio() === ratio && renderer.getSize(new Vector2()).equals(size)) return;
+    renderer.setPixelRatio(ratio);
+    renderer.setSize(size.x, size.y, false);
+  }
+
+  private draw(now_ms: number): void {
+    this.asked = false;
+    const before = this.camera.matrixWorld.clone();
+    let goesOn = this.explorer.turn(now_ms);
+    for (const turn of this.turns) goesOn = turn(now_ms) || goesOn;
+    if (!this.below) return;
+    this.camera.updateMatrixWorld();
+    const isMoving = !this.camera.matrixWorld.equals(before) || this.above !== null;
+    if (isMoving) {
+      if (this.drawn_ms !== null) this.pace.drawn(now_ms - this.drawn_ms, now_ms);
+      this.moved_ms = now_ms;
+    }
+    this.drawn_ms = isMoving ? now_ms : null;
+    const rests = now_ms - this.moved_ms >= REST_MS || this.pace.fineness === 1;
+    this.resize(rests ? 1 : this.pace.fineness);
+    this.render();
+    if (!rests) this.restLater();
+    if (goesOn) this.ask();
+  }
+
+  private restLater(): void {
+    if (this.resting !== null) window.clearTimeout(this.resting);
+    this.resting = window.setTimeout(() => {
+      this.resting = null;
+      this.ask();
+    }, REST_MS + 20);
+  }
+
+  private render(): void {
+    const { renderer, below, above } = this;
+    if (!below) return;
+    renderer.info.reset();
+    const cost = { calls: 0, triangles: 0 };
+    this.paint(below, cost);
+    if (above && this.share < 1) this.veil.take(renderer);
+    if (above) this.paint(above, cost);
+    if (above && this.share < 1) this.veil.draw(renderer, 1 - this.share);
+    this.cost = cost;
+    this.pictures += 1;
+    for (const drawn of this.waiting.splice(0)) drawn();
+  }
+
+  private paint(layer: Layer, cost: { calls: number; triangles: number }): void {
+    const { renderer, camera } = this;
+    if (layer.square.update(camera.position)) layer.stale = true;
+    renderer.shadowMap.needsUpdate = layer.stale;
+    if (layer.stale) this.ask(); // the next drawing is counted without the shadows'
+    layer.stale = false;
+    const before = { ...renderer.info.render };
+    renderer.clear();
+    renderer.render(layer.square.scene, camera);
+    cost.calls += renderer.info.render.calls - before.calls;
+    cost.triangles += renderer.info.render.triangles - before.triangles;
+  }
+}
+
+/** Return the vertical field of view, degrees, that shows enough of the width on a screen of this shape. */
+function fieldOf(aspect: number): number {
+  const halfWidth = Math.tan((LEAST_WIDTH_DEG * Math.PI) / 360);
+  return Math.max(FIELD_DEG, (Math.atan(halfWidth / aspect) * 360) / Math.PI);
+}

@@ -1,0 +1,60 @@
+/** What was drawn last, kept and drawn over what is drawn next, to fade from one to the other. three.js only. */
+
+import {
+  FramebufferTexture,
+  Mesh,
+  OrthographicCamera,
+  PlaneGeometry,
+  Scene,
+  ShaderMaterial,
+  Vector2,
+  type WebGLRenderer,
+} from "three";
+
+const VERTEX = /* glsl */ `
+  varying vec2 vAt;
+  void main() { vAt = uv; gl_Position = vec4(position.xy, 0.0, 1.0); }`;
+
+/** The colours are the screen's own: they are neither mapped nor converted. */
+const FRAGMENT = /* glsl */ `
+  uniform sampler2D picture; uniform float share;
+  varying vec2 vAt;
+  void main() { gl_FragColor = vec4(texture2D(picture, vAt).rgb, share); }`;
+
+export class Veil {
+  private picture: FramebufferTexture | null = null;
+  private readonly scene = new Scene();
+  private readonly camera = new OrthographicCamera();
+  private readonly material = new ShaderMaterial({
+    uniforms: { picture: { value: null }, share: { value: 1 } },
+    vertexShader: VERTEX,
+    fragmentShader: FRAGMENT,
+    transparent: true,
+    depthTest: false,
+    depthWrite: false,
+    toneMapped: false,
+  });
+
+  constructor() {
+    const quad = new Mesh(new PlaneGeometry(2, 2), this.material);
+    quad.frustumCulled = false;
+    this.scene.add(quad);
+  }
+
+  /** Keep what is drawn now. */
+  take(renderer: WebGLRenderer): void {
+    const { x, y } = renderer.getDrawingBufferSize(new Vector2());
+    if (this.picture?.image.width !== x || this.picture.image.height !== y) {
+      this.picture?.dispose();
+      this.picture = new FramebufferTexture(x, y);
+    }
+    renderer.copyFramebufferToTexture(this.picture);
+  }
+
+  /** Draw what was kept, by that share. */
+  draw(renderer: WebGLRenderer, share: number): void {
+    const { picture, share: opacity } = this.material.uniforms as Record<"picture" | "share", { value: unknown }>;
+    [picture.value, opacity.value] = [this.picture, share];
+    renderer.render(this.scene, this.camera);
+  }
+}
