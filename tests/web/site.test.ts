@@ -23,6 +23,8 @@ const SITE = {
       variants: [{ id: "a", name: NAMES, why: { en: "Because." } }, { id: "b" }, 3],
       default_variant: "a",
       footprint_en: [[1, 2], [3, "4"], [5, 6, 7], 8],
+      base_z_m: -0.5,
+      height_m: 13,
     },
     { id: "bare" },
     "none",
@@ -59,6 +61,8 @@ test("a site is read with its monuments, and what it leaves out has a plain valu
         [1, 2],
         [5, 6],
       ],
+      base_m: -0.5,
+      height_m: 13,
     },
     {
       id: "bare",
@@ -70,6 +74,8 @@ test("a site is read with its monuments, and what it leaves out has a plain valu
       variants: [],
       defaultVariant: null,
       footprint: [],
+      base_m: 0,
+      height_m: 0,
     },
   ]);
   expect(site.landmarks).toEqual([{ id: "corner", name: "Temple", point_site_m: [1, 2, 3] }]);

@@ -10,8 +10,9 @@ import { Choices } from "./choices";
 import { clockOff, clockWords } from "./clock";
 import { Composite } from "./composite";
 import { deedsOf } from "./deeds";
+import type { Standpoint } from "./describe";
 import { canDraw, element, publishNothing } from "./dom";
-import { invertRigid, T_gltf_site, transform, type Vector3 } from "./frames";
+import { headingOf, invertRigid, T_gltf_site, transform, type Vector3 } from "./frames";
 import { Guide } from "./guide";
 import { Hmd, worn } from "./hmd";
 import { Hud } from "./hud";
@@ -21,6 +22,7 @@ import { project } from "./lens";
 import { Look } from "./look";
 import { SiteMap } from "./map";
 import { Square } from "./model";
+import { Narrator } from "./narrator";
 import { loadOccluders } from "./occluders";
 import { GHOST, NOTHING, type Overlay, Overlays, seenThrough } from "./overlay";
 import type { Request } from "./playback";
@@ -65,6 +67,7 @@ class Page {
     (share) => this.setPast(share),
     () => this.composite.redraw(),
   );
+  private readonly narrator = new Narrator(() => this.standpoint);
   private readonly hmd = this.wear();
   private link: Link | null = null;
   private readonly bar = new Bar((request) => this.ask(request));
@@ -130,6 +133,7 @@ class Page {
   private async learn(site: Site): Promise<void> {
     const outlines = site.monuments.map(({ footprint }) => footprint).filter((footprint) => footprint.length > 2);
     this.align.learn(site);
+    this.narrator.learn(site.monuments);
     this.guide.map = new SiteMap(element("plan", HTMLElement), outlines);
     this.overlays.eyeHeight_m = site.eye_height_m;
     try {
@@ -246,6 +250,7 @@ class Page {
     }
     if (this.frame)
       this.hmd?.turn(this.locked?.headingKnown ? this.locked.T_site_cam : null, fieldOf(this.frame.lens), now_ms);
+    this.narrator.turn(now_ms);
     const playing = this.session?.playback?.playing ?? true;
     this.hud.show(this.frame, playing, now_ms);
     this.hud.advise({
@@ -312,6 +317,14 @@ class Page {
   /** The pose of the picture that is drawn now, never that of another one. */
   get locked(): CameraPose | null {
     return this.pose?.frameId === this.frame?.frameId ? this.pose : null;
+  }
+
+  /** Where the drawn picture's eye is; null where nobody knows where it looks. */
+  private get standpoint(): Standpoint | null {
+    const { frame, locked } = this;
+    if (!frame || !locked?.headingKnown) return null;
+    const [e_m, n_m, u_m] = transform(locked.T_site_cam, [0, 0, 0]);
+    return { e_m, n_m, u_m, heading_rad: headingOf(locked.T_site_cam), half_rad: fieldOf(frame.lens) / 2 };
   }
 
   /** Ask the rig for something; return the request's name, or null where there is no connection. */

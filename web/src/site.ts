@@ -25,6 +25,9 @@ export interface Monument {
   readonly defaultVariant: string | null;
   /** Corners on the ground, east and north. */
   readonly footprint: readonly Place[];
+  /** Of its foot, over the site's origin. */
+  readonly base_m: number;
+  readonly height_m: number;
 }
 
 /** A point that stands today and that visitors can find again: they point it out to say where the picture looks. */
@@ -143,6 +146,8 @@ function parseMonument(monument: Fields, languages: readonly string[], sources: 
       const [e, n] = list(corner).map((value) => number(value, Number.NaN));
       return e !== undefined && n !== undefined && Number.isFinite(e + n) ? [[e, n]] : [];
     }),
+    base_m: number(monument["base_z_m"], 0),
+    height_m: number(monument["height_m"], 0),
   };
 }
 
