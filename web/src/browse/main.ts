@@ -1,6 +1,6 @@
 /** The start page: the virtual square. */
 
-import "../language/page";
+import "../everyone";
 import { canDraw, element, publishNothing, tell } from "../dom";
 import type { Matrix4, Vector3 } from "../frames";
 import { languages, say } from "../language/speech";
