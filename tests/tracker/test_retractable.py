@@ -2,8 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import replace
-
-import pytest
+from functools import cache
 
 from tests.tracker.precise.stream import NAMES, S, estimator, row, stream
 from tracker.measurements import Measurement, Outcome, Retraction, Sighting, Standpoint
@@ -34,31 +33,26 @@ def taken_back(at_s: float, times: int = 1) -> list[Measurement]:
     return sorted([*stream(), *retractions], key=lambda m: m.t_recv_ns)
 
 
-def without(*indices: int) -> list[Measurement]:
-    """Return the stream without some of what is said in it: three landmarks, then a place."""
+@cache
+def without(*indices: int) -> tuple[object, ...]:
+    """Return the last pose without some of what is said in the stream: three landmarks, then a place."""
     said = [m for m in stream() if isinstance(m, SAID)]
-    return [m for m in stream() if all(m is not said[index] for index in indices)]
+    return end(m for m in stream() if all(m is not said[index] for index in indices))
 
 
-@pytest.fixture(scope="module")
-def as_said() -> tuple[object, ...]:
-    """The last pose where nothing is taken back."""
-    return end(stream())
-
-
-def test_the_last_word_is_taken_back(as_said: tuple[object, ...]) -> None:
+def test_the_last_word_is_taken_back() -> None:
     """The place, some seconds after it was told, with everything measured meanwhile kept."""
-    assert end(taken_back(42.0)) == end(without(3)) != as_said
+    assert end(taken_back(42.0)) == without(3) != without()
 
 
 def test_words_are_taken_back_one_after_another() -> None:
-    assert end(taken_back(42.0, times=2)) == end(without(2, 3))
-    assert end(taken_back(42.0, times=3)) == end(without(1, 2, 3)), "the first landmark is out of reach"
-    assert end(taken_back(42.0, times=MOST + 3)) == end(without(1, 2, 3))
+    assert end(taken_back(42.0, times=2)) == without(2, 3)
+    assert end(taken_back(42.0, times=3)) == without(1, 2, 3), "the first landmark is out of reach"
+    assert end(taken_back(42.0, times=MOST + 3)) == without(1, 2, 3)
 
 
 def test_what_is_said_after_that_stays() -> None:
-    assert end(taken_back(30.0)) == end(without(1))
+    assert end(taken_back(30.0)) == without(1)
 
 
 def test_where_nothing_was_said_lately_nothing_is_taken_back() -> None:
@@ -97,4 +91,4 @@ def test_a_snapshot_holds_what_can_be_taken_back() -> None:
     rest = [Retraction(until_ns, until_ns), *(m for m in stream() if m.t_recv_ns >= until_ns)]
     for measurement in rest:
         other.step(measurement)
-    assert row(other.predict(END_NS)) == end(without(3))
+    assert row(other.predict(END_NS)) == without(3)
