@@ -1,6 +1,7 @@
 """What `/api/site` answers: the facts of a site as JSON, with every text in all its languages."""
 
 import re
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -69,7 +70,8 @@ def _models(folder: Path) -> dict[str, Any]:
 
 
 def _url(path: Path) -> str:
-    return f"/models/{path.name}"
+    """Return a model's address, which names its content: who has kept one never keeps it under another's name."""
+    return f"/models/{path.name}?v={sha256(path.read_bytes()).hexdigest()[:12]}"
 
 
 def _view(view: View) -> dict[str, Any]:

@@ -1,6 +1,7 @@
 import { fileURLToPath } from "node:url";
 import type { Plugin } from "vite";
 import { defineConfig } from "vitest/config";
+import { offline } from "./tools/offline";
 
 const here = (path: string): string => fileURLToPath(new URL(path, import.meta.url));
 
@@ -21,11 +22,17 @@ const program = "127.0.0.1:8000"; // `agora demo`, when the pages are developed 
 
 export default defineConfig({
   base: "/",
-  plugins: [pages()],
+  plugins: [pages(), offline()],
   build: {
     target: "es2022",
     chunkSizeWarningLimit: 900, // three.js is most of it
-    rolldownOptions: { input: { index: here("index.html"), ar: here("ar.html") } },
+    rolldownOptions: {
+      input: { index: here("index.html"), ar: here("ar.html"), worker: here("src/offline/worker.ts") },
+      output: {
+        // a service worker is known by its address
+        entryFileNames: ({ name }) => (name === "worker" ? "worker.js" : "assets/[name]-[hash].js"),
+      },
+    },
   },
   server: {
     proxy: {

@@ -1,6 +1,7 @@
 """What a page is told of a site: models with their levels, captions and tour in two languages, rivals and evidence."""
 
 import json
+from hashlib import sha256
 from pathlib import Path
 from typing import Any, get_args
 
@@ -23,8 +24,13 @@ def site() -> Site:
 def facts(site: Site, tmp_path: Path) -> dict[str, Any]:
     names = ("today.0", "roman.1", "roman.0", "roman.2", "materials", "occluders", "kiosk")
     for name in names:
-        (tmp_path / f"{name}.glb").touch()
+        (tmp_path / f"{name}.glb").write_text(name, encoding="utf-8")
     return site_facts(site, tmp_path)
+
+
+def address(name: str) -> str:
+    """Return the address of a model whose content is its name."""
+    return f"/models/{name}.glb?v={sha256(name.encode()).hexdigest()[:12]}"
 
 
 def test_it_is_json(facts: dict[str, Any]) -> None:
@@ -33,15 +39,22 @@ def test_it_is_json(facts: dict[str, Any]) -> None:
 
 def test_models_have_their_levels_in_order(facts: dict[str, Any]) -> None:
     assert facts["models"] == {
-        "kiosk": "/models/kiosk.glb",
-        "roman": {"levels": ["/models/roman.0.glb", "/models/roman.1.glb", "/models/roman.2.glb"]},
-        "today": {"levels": ["/models/today.0.glb"]},
+        "kiosk": address("kiosk"),
+        "roman": {"levels": [address("roman.0"), address("roman.1"), address("roman.2")]},
+        "today": {"levels": [address("today.0")]},
     }
 
 
+def test_a_models_address_names_its_content(site: Site, facts: dict[str, Any], tmp_path: Path) -> None:
+    (tmp_path / "kiosk.glb").write_text("another", encoding="utf-8")
+    later = site_facts(site, tmp_path)["models"]
+    assert later["kiosk"] != facts["models"]["kiosk"]
+    assert later["roman"] == facts["models"]["roman"]
+
+
 def test_what_stands_beside_the_models_is_named_or_null(facts: dict[str, Any]) -> None:
-    assert facts["occluders"] == "/models/occluders.glb"
-    assert facts["materials"] == "/models/materials.glb"
+    assert facts["occluders"] == address("occluders")
+    assert facts["materials"] == address("materials")
     assert facts["walkable"] is None
 
 

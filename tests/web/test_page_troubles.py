@@ -2,6 +2,8 @@
 
 import struct
 from collections.abc import Iterator
+from pathlib import Path
+from urllib.parse import urlsplit
 
 import cv2
 import numpy as np
@@ -12,7 +14,7 @@ from assets.levels import LEVELS
 from server.showing import Showing
 from tests.web.pages import ArPage, open_page
 from tests.web.tampering import Tampering
-from tests.web.walk import CORNERS, NAME, position_of
+from tests.web.walk import CORNERS, NAME, make_site, position_of, showing_in, write_log
 
 pytestmark = pytest.mark.browser
 
@@ -132,6 +134,22 @@ def test_a_connection_that_was_cut_comes_back_by_itself(ar: ArPage, showing: Sho
     ar.until("!document.querySelector('#notice').textContent.startsWith('The connection is lost')")
 
 
+def test_a_server_that_ends_and_begins_again_is_found_by_itself(ar: ArPage, tmp_path: Path) -> None:
+    write_log(tmp_path / f"{NAME}.mcap")
+    site = make_site(tmp_path)
+    with showing_in(site) as first:
+        ar.page.goto(f"{first.url}ar")
+        ar.until("globalThis.agora && agora.stats().framesDrawn >= 2")
+        port = urlsplit(first.url).port
+    assert port is not None
+    ar.until("document.querySelector('#notice').textContent.startsWith('The connection is lost')")
+    drawn = ar.stats()["framesDrawn"]
+    with showing_in(site, port):
+        ar.until(f"agora.stats().framesDrawn >= {drawn + 2}")
+        ar.until("document.querySelector('#notice').hidden")
+        assert ar.stats()["mismatchedFrames"] == 0
+
+
 def test_graphics_that_are_taken_away_come_back_as_they_were(browser: Browser, showing: Showing) -> None:
     with open_page(browser) as ar:
         ar.page.goto(f"{showing.url}ar?effort=shadows")
@@ -227,5 +245,5 @@ def test_every_request_goes_to_the_pages_own_server(browser: Browser, showing: S
         assert [url for url in ar.requests if not url.startswith(own)] == []
         assert any(url.endswith(f"/ws/view/{NAME}") for url in ar.requests)
         for level in LEVELS:
-            assert any(url.endswith(f"/models/roman.{level}.glb") for url in ar.requests)
+            assert any(f"/models/roman.{level}.glb?v=" in url for url in ar.requests)
         assert ar.errors == []

@@ -1,8 +1,10 @@
-/** What is for everyone on every page: its language and its theme, with their switches. Imported first by each page's script. */
+/** What is for everyone on every page: its language and its theme, with their switches, and whether it is kept for later. Imported first by each page's script. */
 
+import { tell } from "./dom";
 import { languageMenu } from "./language/page";
 import { say } from "./language/speech";
 import { keep, kept } from "./memory";
+import { keepForLater } from "./offline/keep";
 import { themeOf } from "./theme";
 
 const THEME = "agora.theme";
@@ -31,5 +33,21 @@ function themeSwitch(): HTMLElement {
   return label;
 }
 
-const switches = [languageMenu(), themeSwitch()];
+/** Return a line that is empty until the page is kept on this device. */
+function keptLine(): HTMLElement {
+  const line = document.createElement("p");
+  line.className = "kept";
+  line.setAttribute("role", "status");
+  line.hidden = true;
+  window.addEventListener("load", () => {
+    const { agora } = globalThis as { agora?: { readonly ready?: Promise<unknown> } };
+    keepForLater(() => Promise.resolve(agora?.ready)).then(
+      (isKept) => tell(line, isKept ? say("offline.kept") : null),
+      (error: unknown) => console.warn("the pages are not kept for later", error),
+    );
+  });
+  return line;
+}
+
+const switches = [languageMenu(), themeSwitch(), keptLine()];
 document.querySelector(".everyone")?.replaceChildren(...switches);

@@ -9,6 +9,7 @@ export const en = {
   "language.name": "English",
   site: "The ancient square",
   "theme.glare": "High contrast, for the sun",
+  "offline.kept": "Kept on this device: opens without a network, too.",
 
   // what is measured
   "number.unknown": "unknown",

@@ -7,6 +7,7 @@ export const tr: Catalogue = {
   "language.name": "Türkçe",
   site: "Antik meydan",
   "theme.glare": "Güneşte okunur, yüksek karşıtlık",
+  "offline.kept": "Bu aygıtta saklandı: ağ olmadan da açılır.",
 
   "number.unknown": "bilinmiyor",
   "number.degrees": "{value}°",
