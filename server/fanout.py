@@ -42,6 +42,7 @@ class Mailbox:
         self._texts: deque[str] = deque()
         self._frame: tuple[int, bytes, int | None] | None = None
         self._pose: tuple[bytes, int | None] | None = None
+        self._company: str | None = None
         self._unacknowledged: deque[int] = deque()
         self._line: Line | None = None
         self._closed = asyncio.Event()
@@ -49,6 +50,8 @@ class Mailbox:
         """What became of frames and poses; receivers of one session share it."""
         self.sent: Callable[[bool, int], None] = lambda is_frame, t_ns: None
         """Called when a frame, or a pose, has gone, with when it had arrived."""
+        self.frames_wanted: int | None = None
+        """How many frames are wanted yet, for what is told with them: without pictures. None for all, as they may be seen."""
         self.role: Role = "local"
         """Of whom it is for."""
         self.closing: tuple[int, str] | None = None
@@ -87,6 +90,11 @@ class Mailbox:
         self._pose = (data, t_ns)
         self._send()
 
+    def put_company(self, text: str) -> None:
+        """Replace what waits to be told of those who watch."""
+        self._company = text
+        self._send()
+
     def acknowledge(self, frame_id: int) -> None:
         """Take note that the receiver is done with a frame and with those sent before it; an unknown one says nothing."""
         if frame_id in self._unacknowledged:
@@ -123,6 +131,9 @@ class Mailbox:
                 (pose, t_ns), self._pose = self._pose, None
                 self.tally.poses_sent += 1
                 self._send_timed(line, pose, False, t_ns)
+            elif self._company is not None:
+                company, self._company = self._company, None
+                line.send(company)
             else:
                 return
 

@@ -1,7 +1,7 @@
 """The text messages of both sockets: JSON, checked against these classes. Pure.
 
-Viewer -> server: `ack`, `control`. Server -> rig: `control`. Rig -> server: `state`, `reply`. Server -> viewer: `hello`, `state`,
-`reply`. What a class does not name is ignored, so an older server understands a newer rig.
+Viewer -> server: `ack`, `control`, `look`. Server -> rig: `control`. Rig -> server: `state`, `reply`. Server -> viewer: `hello`,
+`state`, `reply`, `company`. What a class does not name is ignored, so an older server understands a newer rig.
 """
 
 from typing import Annotated, Any, Final, Literal, TypeAlias, TypeVar
@@ -30,6 +30,40 @@ class Ack(Struct, frozen=True, tag_field="type", tag="ack"):
     """A viewer has drawn, or dropped, this frame."""
 
     frame_id: FrameId
+
+
+class Eye(Struct, frozen=True):
+    """Where somebody stands in the virtual square, and where they look."""
+
+    place_site_m: tuple[Metres, Metres, Metres]
+    heading_rad: Annotated[float, Meta(ge=-7.0, le=7.0)]
+    """Clockwise from north."""
+    pitch_rad: Annotated[float, Meta(ge=-1.6, le=1.6)]
+    """Upwards from the level."""
+
+
+class Look(Struct, frozen=True, tag_field="type", tag="look"):
+    """A viewer shows the others where it looks from: at most ten times a second, and again within ten seconds."""
+
+    eye: Eye | None
+    """Null for: no longer."""
+
+
+class Companion(Struct, frozen=True, forbid_unknown_fields=True):
+    """One of those who watch, and has said from where."""
+
+    number: int
+    """As in its own `hello`."""
+    eye: Eye
+
+
+class Company(Struct, frozen=True, forbid_unknown_fields=True, tag_field="type", tag="company"):
+    """Who watches: the whole of it anew, at most four times a second. Nothing here tells who they are."""
+
+    watching: int
+    """How many there are, the reader among them."""
+    seen: list[Companion]
+    """Those who have said where they look from, at most 32, the reader among them."""
 
 
 class Tap(Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="tap"):
@@ -166,6 +200,8 @@ class Hello(Struct, frozen=True, forbid_unknown_fields=True, tag_field="type", t
     """As whom this viewer is here; `rig` is the walker, who alone switches sharing."""
     sees: bool
     """Whether this viewer gets the camera picture though it is not shared; else an empty one stands in its place."""
+    number: int
+    """Of this viewer among those who watch, from one; see `Company`."""
     session: Session
 
 
@@ -175,12 +211,14 @@ class SessionNews(Struct, frozen=True, forbid_unknown_fields=True, tag_field="ty
     session: Session
 
 
-_FROM_VIEWER: msgspec.json.Decoder[Ack | ControlRequest] = msgspec.json.Decoder(Ack | ControlRequest)
+FromViewer: TypeAlias = Ack | ControlRequest | Look
+
+_FROM_VIEWER: msgspec.json.Decoder[FromViewer] = msgspec.json.Decoder(FromViewer)
 _FROM_RIG: msgspec.json.Decoder[StateUpdate | ControlReply] = msgspec.json.Decoder(StateUpdate | ControlReply)
 _CONTROL: msgspec.json.Decoder[ControlRequest] = msgspec.json.Decoder(ControlRequest)
 
 
-def parse_from_viewer(text: str) -> Ack | ControlRequest:
+def parse_from_viewer(text: str) -> FromViewer:
     """Read what a viewer may say; `MalformedMessage` for everything else."""
     return _parse(_FROM_VIEWER, text, MAX_VIEWER_TEXT)
 
@@ -200,9 +238,9 @@ def encode(message: Struct) -> str:
     return msgspec.json.encode(message).decode()
 
 
-def hello(session: dict[str, Any], *, role: Role, sees: bool) -> str:
+def hello(session: dict[str, Any], *, role: Role, sees: bool, number: int) -> str:
     """Return the first message to a viewer, see `Hello`."""
-    message = {"type": "hello", "version": VERSION, "role": role, "sees": sees, "session": session}
+    message = {"type": "hello", "version": VERSION, "role": role, "sees": sees, "number": number, "session": session}
     return msgspec.json.encode(message).decode()
 
 

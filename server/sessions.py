@@ -9,9 +9,10 @@ from collections.abc import Callable, Iterator
 from typing import Any, Final
 
 from server import messages
+from server.company import Watchers
 from server.errors import ServerFull, UnknownSession
 from server.fanout import Mailbox
-from server.messages import ControlReply, ControlRequest, StateUpdate
+from server.messages import ControlReply, ControlRequest, Look, StateUpdate
 from server.privacy import without_picture
 from server.traffic import Tally, Traffic
 from server.wire import decode_frame, decode_pose, is_frame, keep_seek
@@ -76,6 +77,7 @@ class Session:
         self.tally = Tally()
         """What went to viewers."""
         self.viewers: set[Mailbox] = set()
+        self._watchers = Watchers()
         self.title: str | None = None
         """What an operator calls it, in the place of its name."""
         self._fields = dict(_DEFAULTS)
@@ -177,7 +179,9 @@ class Session:
             raise ServerFull(f"{self._max_viewers} viewers watch already: try again when one has left.")
         self.viewers.add(viewer)
         viewer.tally, viewer.sent = self.tally, self._sent
-        viewer.put_text(messages.hello(self.describe(), role=viewer.role, sees=viewer.sees))
+        number = self._watchers.join(viewer)
+        viewer.put_text(messages.hello(self.describe(), role=viewer.role, sees=viewer.sees, number=number))
+        viewer.put_company(self._watchers.message())
         self._show(viewer)
         if self._pose is not None:
             viewer.put_pose(self._pose)
@@ -185,7 +189,13 @@ class Session:
     def leave(self, viewer: Mailbox) -> None:
         """Forget a viewer and what it asked for."""
         self.viewers.discard(viewer)
+        self._watchers.leave(viewer)
         self._pending = {key: asked for key, asked in self._pending.items() if asked[0] is not viewer}
+
+    def look(self, viewer: Mailbox, look: Look, t_ns: int) -> None:
+        """Note from where a viewer looks on, for the others."""
+        self._watchers.take(viewer, look, t_ns)
+        self._tell_company(t_ns)
 
     def control(self, viewer: Mailbox, request: ControlRequest) -> None:
         """Forward a viewer's request to the rig under a number of our own: two viewers may choose the same."""
@@ -222,29 +232,40 @@ class Session:
         if pose is not None:
             for viewer in self.viewers:
                 viewer.put_pose(*pose)
+        for news in (frame, pose):
+            if news is not None:
+                self._tell_company(news[-1])
 
     def _show(self, viewer: Mailbox, t_ns: int | None = None) -> None:
         """Give a viewer the newest frame, as it may see it."""
-        if self._frame is None:
+        if self._frame is None or viewer.frames_wanted == 0:
             return
         frame_id, data = self._frame
-        if not (viewer.sees or self.sharing):
+        if viewer.frames_wanted is not None:
+            viewer.frames_wanted -= 1
+        if not (viewer.sees or self.sharing) or viewer.frames_wanted is not None:
             self._hidden = data = self._hidden or without_picture(data)  # made once for all
         viewer.put_frame(frame_id, data, t_ns)
 
     def _change(self, fields: dict[str, Any]) -> None:
         before = self.sharing
         self._fields |= fields
+        self._tell()
         if self.sharing != before:
             for viewer in self.viewers:
                 if not viewer.sees:
                     self._show(viewer)  # in the place of one that waits
-        self._tell()
 
     def _tell(self) -> None:
         text = messages.state(self.describe())
         for viewer in self.viewers:
             viewer.put_text(text)
+
+    def _tell_company(self, t_ns: int) -> None:
+        """Tell everybody who watches, where that is news."""
+        if (news := self._watchers.news(t_ns)) is not None:
+            for viewer in self.viewers:
+                viewer.put_company(news)
 
     def _relay_reply(self, reply: ControlReply) -> None:
         if asked := self._pending.pop(reply.request_id, None):

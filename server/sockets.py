@@ -19,7 +19,7 @@ from server.fanout import Mailbox
 from server.grants import Grant
 from server.limits import Bucket
 from server.line import SocketLine, line_of
-from server.messages import Ack, ControlReply, encode, parse_from_viewer
+from server.messages import Ack, ControlReply, Look, encode, parse_from_viewer
 from server.sessions import Session, Sessions
 from server.wire import SUBPROTOCOL
 
@@ -112,6 +112,7 @@ def socket_routes(sessions: Sessions, access: Access) -> APIRouter:
             return
         mailbox = Mailbox()
         mailbox.role = grant.role
+        mailbox.frames_wanted = 1 if websocket.query_params.get("pictures") == "none" else None
         try:
             session = sessions.get(name)
             session.join(mailbox)
@@ -121,7 +122,7 @@ def socket_routes(sessions: Sessions, access: Access) -> APIRouter:
             return
         _logger.info("a viewer came", extra={"session": name, "role": grant.role, "viewers": len(session.viewers)})
         try:
-            await _serve_viewer(websocket, session, mailbox, grant, access.left_s(grant))
+            await _serve_viewer(websocket, session, mailbox, grant, access.left_s(grant), sessions.now_ns)
         finally:
             tell("a viewer left", name, mailbox)
 
@@ -145,7 +146,12 @@ async def _serve_rig(
 
 
 async def _serve_viewer(
-    websocket: WebSocket, session: Session, mailbox: Mailbox, grant: Grant, left_s: float | None
+    websocket: WebSocket,
+    session: Session,
+    mailbox: Mailbox,
+    grant: Grant,
+    left_s: float | None,
+    now_ns: Callable[[], int],
 ) -> None:
     def take(message: str | bytes) -> None:
         if isinstance(message, bytes):
@@ -153,6 +159,8 @@ async def _serve_viewer(
         parsed = parse_from_viewer(message)
         if isinstance(parsed, Ack):
             mailbox.acknowledge(parsed.frame_id)
+        elif isinstance(parsed, Look):
+            session.look(mailbox, parsed, now_ns())
         elif not grant.allows("control", session.name):
             mailbox.put_text(encode(ControlReply(parsed.request_id, ok=False, error=_ONLY_WATCHES)))
         elif parsed.action == "share" and not grant.allows("see", session.name):

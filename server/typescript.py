@@ -28,8 +28,8 @@ from server.wire import FRAME_HEADER_BYTES, MAX_FRAME_BYTES, POSE_BYTES, SUBPROT
 
 PLACE: Final = Path(__file__).parents[1] / "web" / "src" / "messages.gen.ts"
 #: What a page sends may leave out what has a default; what it receives is whole.
-SENT: Final = (messages.Ack, messages.ControlRequest)
-RECEIVED: Final = (messages.Hello, messages.SessionNews, messages.ControlReply)
+SENT: Final = (messages.Ack, messages.ControlRequest, messages.Look)
+RECEIVED: Final = (messages.Hello, messages.SessionNews, messages.ControlReply, messages.Company)
 CONSTANTS: Final = {
     "VERSION": VERSION,
     "SUBPROTOCOL": SUBPROTOCOL,

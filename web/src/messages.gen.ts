@@ -50,6 +50,22 @@ export interface ControlRequest {
   readonly value?: boolean | number | string | Tap | Here | TakeBack | null;
 }
 
+/** Where somebody stands in the virtual square, and where they look. */
+export interface Eye {
+  readonly place_site_m: readonly [number, number, number];
+  /** Clockwise from north. */
+  readonly heading_rad: number;
+  /** Upwards from the level. */
+  readonly pitch_rad: number;
+}
+
+/** A viewer shows the others where it looks from: at most ten times a second, and again within ten seconds. */
+export interface Look {
+  readonly type: "look";
+  /** Null for: no longer. */
+  readonly eye: Eye | null;
+}
+
 /** Where a replay stands. */
 export interface Playback {
   readonly playing: boolean;
@@ -104,6 +120,8 @@ export interface Hello {
   readonly role: "admin" | "local" | "operator" | "rig" | "viewer";
   /** Whether this viewer gets the camera picture though it is not shared; else an empty one stands in its place. */
   readonly sees: boolean;
+  /** Of this viewer among those who watch, from one; see `Company`. */
+  readonly number: number;
   readonly session: Session;
 }
 
@@ -122,6 +140,22 @@ export interface ControlReply {
   readonly did_seek: boolean;
 }
 
-export type FromViewer = Ack | ControlRequest;
+/** One of those who watch, and has said from where. */
+export interface Companion {
+  /** As in its own `hello`. */
+  readonly number: number;
+  readonly eye: Eye;
+}
 
-export type ToViewer = Hello | SessionNews | ControlReply;
+/** Who watches: the whole of it anew, at most four times a second. Nothing here tells who they are. */
+export interface Company {
+  readonly type: "company";
+  /** How many there are, the reader among them. */
+  readonly watching: number;
+  /** Those who have said where they look from, at most 32, the reader among them. */
+  readonly seen: readonly Companion[];
+}
+
+export type FromViewer = Ack | ControlRequest | Look;
+
+export type ToViewer = Hello | SessionNews | ControlReply | Company;
