@@ -1,16 +1,15 @@
 """The overlay's three styles as pixels, and what is left clear: the same picture with one doubt after another."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from playwright.sync_api import Browser, Page, WebSocketRoute
+from playwright.sync_api import Browser, WebSocketRoute
 
 from server.showing import Showing
-from server.wire import decode_frame, encode_frame, is_frame
 from tests.web.pages import ArPage, Pixels, open_page
+from tests.web.tampering import Doubting
 from tests.web.walk import position_of
 
 pytestmark = pytest.mark.browser
@@ -18,26 +17,6 @@ pytestmark = pytest.mark.browser
 FRAME = 25
 OUTLINE = np.array([250, 230, 184])
 """Red, green, blue."""
-
-
-class Doubting:
-    """Between the server and the page: poses with a doubt, and a speed, of the test's choice."""
-
-    def __init__(self, page: Page) -> None:
-        self.sigma_m, self.sigma_rad = 0.0, 0.0
-        self.v_m_s = (0.0, 0.0, 0.0)
-        page.route_web_socket("**/ws/view/**", self._join)
-
-    def _join(self, route: WebSocketRoute) -> None:
-        server = route.connect_to_server()
-        server.on_message(lambda message: route.send(self._pass(message)))
-
-    def _pass(self, message: str | bytes) -> str | bytes:
-        if isinstance(message, str) or not is_frame(message):
-            return message
-        meta, jpeg = decode_frame(message)
-        cov = np.diag([self.sigma_m**2] * 3 + [self.sigma_rad**2] * 3)
-        return encode_frame(replace(meta, cov=cov, v_site_m_s=self.v_m_s), jpeg)
 
 
 class Styled:
@@ -49,7 +28,7 @@ class Styled:
     def pixels(self, sigma_m: float, sigma_deg: float, speed_m_s: float = 0.0) -> Pixels:
         """Return the composite with a doubt: one sigma of place and heading."""
         doubting = self._doubting
-        doubting.sigma_m, doubting.sigma_rad = sigma_m, float(np.radians(sigma_deg))
+        doubting.sigma_m, doubting.sigma_deg = sigma_m, sigma_deg
         doubting.v_m_s = (speed_m_s, 0.0, 0.0)
         self.ar.seek(position_of(FRAME - 3))
         self.ar.until(f"agora.stats().lastFrameId === {FRAME - 3}")

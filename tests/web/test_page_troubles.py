@@ -146,7 +146,7 @@ def test_a_server_that_ends_and_begins_again_is_found_by_itself(ar: ArPage, tmp_
     drawn = ar.stats()["framesDrawn"]
     with showing_in(site, port):
         ar.until(f"agora.stats().framesDrawn >= {drawn + 2}")
-        ar.until("document.querySelector('#notice').hidden")
+        ar.until("!document.querySelector('#notice').textContent.startsWith('The connection is lost')")
         assert ar.stats()["mismatchedFrames"] == 0
 
 

@@ -118,6 +118,13 @@ def make_site(folder: Path, occluders: Scene | None = None) -> Site:
 def showing_walk(folder: Path, occluders: Scene | None = None) -> Iterator[Showing]:
     """Show the walk, by its truth and again and again, on a server of its own."""
     write_log(folder / f"{NAME}.mcap")
+    with showing_in(make_site(folder, occluders)) as showing:
+        yield showing
+
+
+@contextmanager
+def showing_in(site: Site, port: int = 0) -> Iterator[Showing]:
+    """Show the walk that lies in the site's folder."""
     settings = ReplaySettings(estimator="truth", looping=True)
-    with Showing(make_site(folder, occluders), Log.open(folder / f"{NAME}.mcap"), settings, port=0, web=WEB) as showing:
+    with Showing(site, Log.open(site.folder / f"{NAME}.mcap"), settings, port=port, web=WEB) as showing:
         yield showing
