@@ -10,6 +10,8 @@ from fastapi.telemetry import TelemetryConfig
 from starlette.types import Scope
 
 from server.access import Access
+from server.console.bridge import console_routes
+from server.console.hosting import ConsoleHost
 from server.entrance import entrance_routes
 from server.guards import Guard
 from server.limits import Limits, Throttle, Visitors
@@ -42,7 +44,7 @@ def create_app(
     limits: Limits | None = None,
     allowed_hosts: Collection[str] = LOOPBACK_HOSTS,
     any_address: bool = False,
-    console_url: str | None = None,
+    console: ConsoleHost | None = None,
     logs: Mapping[str, Path] | None = None,
     sessions: Sessions | None = None,
     store: LogStore | None = None,
@@ -58,7 +60,7 @@ def create_app(
         limits: How much one address may ask; None for the usual.
         allowed_hosts: Names in the Host header that are us.
         any_address: Whether an IP address there is taken for ours as well: where the server is bound to all of them.
-        console_url: Where `/console` leads, if anywhere.
+        console: The operators', at `/console`; None for none.
         logs: The recorded walks that `/api/logs` offers, by session name.
         sessions: The server's; None for fresh ones.
         store: Where uploaded walks are kept, in the place of `logs`.
@@ -71,7 +73,7 @@ def create_app(
         docs_url=None,
         redoc_url=None,
         telemetry=NO_TELEMETRY,
-        lifespan=lambda app: upkeep(store, replays),
+        lifespan=lambda app: upkeep(store, replays, console),
     )
     app.state.sessions, app.state.access = sessions, access
     app.state.visitors = Visitors(limits or Limits(), monotonic)
@@ -81,7 +83,8 @@ def create_app(
     if store is not None:
         app.include_router(upload_routes(store, access, lambda name: _end_replays(replays, name)))
     app.include_router(entrance_routes(access))
-    app.include_router(page_routes(web_folder, models_folder, console_url, access))
+    app.include_router(page_routes(web_folder, models_folder))
+    app.include_router(console_routes(console, access))
     app.include_router(socket_routes(sessions, access))
     app.mount("/", Bundle(directory=web_folder, check_dir=False), name="bundle")
     app.add_middleware(Throttle, visitors=app.state.visitors, large_bodies=_is_upload)

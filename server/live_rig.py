@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from server.aligning import Aligner
-from server.console import Console
+from server.figures import FigureTeller
 from server.messages import ControlReply, ControlRequest
 from server.placing import Placing
 from server.presenting import Presenter
@@ -69,7 +69,6 @@ class LiveRig:
         record: Path | None = None,
         about: Mapping[str, str] | None = None,
         rig_file: Path | None = None,
-        console: Console | None = None,
     ) -> None:
         """Prepare a walk; the recording's file is opened, and nothing else runs.
 
@@ -83,7 +82,6 @@ class LiveRig:
             record: The file to write; None for none.
             about: What goes to the recording's head.
             rig_file: Beside it is kept what the rig learns of itself; None to keep nothing.
-            console: The operator's, if there is one.
 
         Raises:
             MissingSensor: No estimator can run with these sensors, or not the one that was asked for.
@@ -111,8 +109,8 @@ class LiveRig:
             record=self._take,
         )
         self._walk = LiveWalk(self._core, sources, show=self._show, show_pose=self._show_pose, recorder=self._recorder)
-        self._console = console
         self._link: RigLink | None = None
+        self._figures = FigureTeller(self._send_text, self._t_start_ns, monotonic_ns)
         self._presenter: Presenter | None = None
         self._misfit: str | None = None
         self._told: tuple[SensorState, ...] = ()
@@ -242,9 +240,7 @@ class LiveRig:
             height_px, width_px = first.picture.gray().shape
         except MalformedInput:
             return None
-        self._presenter = Presenter(
-            self._link, replace(self._rig, camera=self._lens(width_px, height_px)), self._console
-        )
+        self._presenter = Presenter(self._link, replace(self._rig, camera=self._lens(width_px, height_px)))
         return self._presenter
 
     def _lens(self, width_px: int, height_px: int) -> CameraModel:
@@ -263,6 +259,9 @@ class LiveRig:
 
     def _control(self, request: ControlRequest) -> ControlReply:
         """Take a viewer's request, on the link's thread."""
+        if request.action == "figures":
+            self._figures.ask()
+            return ControlReply(request.request_id, ok=True)
         if request.action != "align":
             error = "This walk is live: it cannot be paused, sought or changed."
             return ControlReply(request.request_id, ok=False, error=error)
@@ -282,11 +281,16 @@ class LiveRig:
         if self._link is None:
             return
         state = self._walk.state
+        self._figures.look((), state.rejected)  # innovations are the fusion thread's own
         states = tuple(health.state for health in state.sensors.values())
         if states == self._told and state.t_ns < self._health_due_ns:
             return
         self._told, self._health_due_ns = states, state.t_ns + _HEALTH_NS
         self._link.send_state({"health": health_of(state), "notice": self._notice(state)})
+
+    def _send_text(self, text: str) -> None:
+        if self._link is not None:
+            self._link.send_text(text)
 
 
 def health_of(state: WalkState) -> dict[str, Any]:

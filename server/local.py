@@ -8,8 +8,7 @@ from typing import Final, Self
 from assets.site import Site
 from server.access import Access
 from server.app import create_app
-from server.console import Console
-from server.errors import ConsoleUnavailable
+from server.console.hosting import ConsoleHost, Link
 from server.site_facts import site_facts
 from server.web_server import WebServer
 
@@ -19,37 +18,23 @@ _YEAR_S: Final = 366 * 86_400
 class LocalServer:
     """A server on loopback for the rigs of this program. Use it as a context manager: leaving it frees the ports."""
 
-    def __init__(
-        self, site: Site, console: Console, *, port: int, web: Path, logs: Mapping[str, Path] | None = None
-    ) -> None:
-        """Put everything together; the console starts, and nothing else is served yet but the port is taken.
+    def __init__(self, site: Site, *, port: int, web: Path, logs: Mapping[str, Path] | None = None) -> None:
+        """Put everything together; nothing is served yet but the port is taken.
 
         Raises:
             PortInUse: The port is taken.
         """
         models = site.folder / "built"
-        self._console = console
         self._access = Access.for_loopback()
         app = create_app(
             web_folder=web,
             models_folder=models,
             site=site_facts(site, models),
             access=self._access,
-            console_url=self._start_console(),
+            console=ConsoleHost(site.folder, lambda: Link(self.url)),
             logs=logs,
         )
         self._server = WebServer(app, "127.0.0.1", port)
-
-    @staticmethod
-    def new_console(site: Site) -> Console:
-        """Return a console for a site, not started."""
-        return Console(model_path=site.folder / "built" / "occluders.glb")
-
-    def _start_console(self) -> str | None:
-        try:
-            return self._console.start()
-        except ConsoleUnavailable:
-            return None  # the walk can be watched without it
 
     @property
     def url(self) -> str:
@@ -70,9 +55,8 @@ class LocalServer:
         return self
 
     def close(self) -> None:
-        """Free the ports, whether it was entered or not."""
+        """Free the port, whether it was entered or not."""
         self._server.close()
-        self._console.stop()
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None

@@ -1,7 +1,8 @@
 """The text messages of both sockets: JSON, checked against these classes. Pure.
 
-Viewer -> server: `ack`, `control`, `look`. Server -> rig: `control`. Rig -> server: `state`, `reply`. Server -> viewer: `hello`,
-`state`, `reply`, `company`. What a class does not name is ignored, so an older server understands a newer rig.
+Viewer -> server: `ack`, `control`, `look`. Server -> rig: `control`. Rig -> server: `state`, `reply`, `figures`. Server -> viewer:
+`hello`, `state`, `reply`, `company`, and `figures` where they were asked for. What a class does not name is ignored, so an older
+server understands a newer rig.
 """
 
 from typing import Annotated, Any, Final, Literal, TypeAlias, TypeVar
@@ -17,7 +18,7 @@ MAX_VIEWER_TEXT: Final = 4 * 1024
 MAX_RIG_TEXT: Final = 64 * 1024
 
 T = TypeVar("T")
-Action = Literal["play", "pause", "seek", "speed", "estimator", "align", "share"]
+Action = Literal["play", "pause", "seek", "speed", "loop", "estimator", "align", "share", "settings", "figures"]
 Seconds: TypeAlias = Annotated[float, Meta(ge=0.0, le=1e9)]
 Name: TypeAlias = Annotated[str, Meta(max_length=256)]
 Sentence: TypeAlias = Annotated[str, Meta(max_length=2000)]
@@ -97,7 +98,8 @@ class ControlRequest(Struct, frozen=True, tag_field="type", tag="control"):
     request_id: Annotated[str, Meta(min_length=1, max_length=64)]
     action: Action
     value: bool | float | Name | Alignment | None = None
-    """Seconds for `seek`, a factor for `speed`, a name for `estimator`, an alignment for `align`, whether to for `share`."""
+    """Seconds for `seek`, a factor for `speed`, a name for `estimator`, an alignment for `align`, whether to for `loop` and `share`,
+    `KEY=VALUE` for `settings`, and an empty text for the usual ones again."""
 
 
 class ControlReply(Struct, frozen=True, tag_field="type", tag="reply"):
@@ -127,6 +129,29 @@ class SensorHealth(Struct, frozen=True):
     """What is the matter and what to do; or that all is well."""
     state: Name = ""
     rate_hz: Annotated[float, Meta(ge=0.0, le=1e6)] = 0.0
+
+
+class Update(Struct, frozen=True):
+    """What one update of a filter saw: measured less predicted."""
+
+    t_s: Annotated[float, Meta(ge=-1e9, le=1e9)]
+    """As the frames' `position_s`."""
+    position_m: Annotated[float, Meta(ge=0.0, le=1e9)]
+    """Length of the difference."""
+    rotation_rad: Annotated[float, Meta(ge=0.0, le=10.0)]
+    motion_model: Name
+
+
+class Figures(Struct, frozen=True, tag_field="type", tag="figures"):
+    """What an operator wants to see of the tracker at work, about once a second."""
+
+    anew: bool
+    """Whether what was told before is to be forgotten."""
+    updates: Annotated[list[Update], Meta(max_length=256)]
+    """In the order of their times; an estimator that makes no measurements of its own has none. Where they go back behind others,
+    they take the place of those."""
+    rejected: dict[Name, Annotated[int, Meta(ge=0)]]
+    """Measurements that were not used since the estimator's start, by reason."""
 
 
 class SessionFields(Struct, frozen=True, kw_only=True):
@@ -211,10 +236,11 @@ class SessionNews(Struct, frozen=True, forbid_unknown_fields=True, tag_field="ty
     session: Session
 
 
+FromRig: TypeAlias = StateUpdate | ControlReply | Figures
 FromViewer: TypeAlias = Ack | ControlRequest | Look
 
 _FROM_VIEWER: msgspec.json.Decoder[FromViewer] = msgspec.json.Decoder(FromViewer)
-_FROM_RIG: msgspec.json.Decoder[StateUpdate | ControlReply] = msgspec.json.Decoder(StateUpdate | ControlReply)
+_FROM_RIG: msgspec.json.Decoder[FromRig] = msgspec.json.Decoder(FromRig)
 _CONTROL: msgspec.json.Decoder[ControlRequest] = msgspec.json.Decoder(ControlRequest)
 
 
@@ -223,7 +249,7 @@ def parse_from_viewer(text: str) -> FromViewer:
     return _parse(_FROM_VIEWER, text, MAX_VIEWER_TEXT)
 
 
-def parse_from_rig(text: str) -> StateUpdate | ControlReply:
+def parse_from_rig(text: str) -> FromRig:
     """Read what a rig may say; `MalformedMessage` for everything else."""
     return _parse(_FROM_RIG, text, MAX_RIG_TEXT)
 

@@ -1,12 +1,10 @@
-"""Pictures with their poses on their way out: to the server over a rig's link, and onto the operator's console."""
+"""Pictures with their poses on their way out to the server, over a rig's link."""
 
 from time import monotonic_ns
 
-from server.console import Console
 from server.push import RigLink, frame_message, pose_message
 from tracker.errors import MalformedInput
 from tracker.estimator import Pose
-from tracker.geometry import transform
 from tracker.playback import Shown
 from tracker.rig import CameraModel, Rig
 
@@ -14,9 +12,9 @@ from tracker.rig import CameraModel, Rig
 class Presenter:
     """Sends what a walk shows. Its methods are called by one thread."""
 
-    def __init__(self, link: RigLink, rig: Rig, console: Console | None = None) -> None:
+    def __init__(self, link: RigLink, rig: Rig) -> None:
         """`rig` has a camera, if only a guessed one: without intrinsics nothing can be drawn."""
-        self._link, self._rig, self._console = link, rig, console
+        self._link, self._rig = link, rig
         self._sequence = 0
 
     @property
@@ -43,14 +41,8 @@ class Presenter:
         except MalformedInput:
             return  # a picture that does not decode is left out, as vision leaves it out
         self._link.send_frame(message)
-        if pose is None:
-            return
-        self.show_pose(pose, estimator)
-        if self._console is not None and self._rig.camera is not None:
-            if did_seek:
-                self._console.clear()
-            T_site_cam = transform(pose.wxyz_site_body, pose.p_site_m) @ self._rig.T_body_cam
-            self._console.show(T_site_cam, self._rig.camera, pose.motion_model)
+        if pose is not None:
+            self.show_pose(pose, estimator)
 
     def show_pose(self, pose: Pose, estimator: str) -> None:
         """Send a pose for those who show no picture."""

@@ -138,7 +138,7 @@ class RigLink:
             trust: The one certificate, PEM, that the server must show whatever its name: a rig beside its own server calls that by
                 an address that no certificate is for. None for those of the machine's authorities.
         """
-        self._context = None if trust is None else _pinned(trust)
+        self._context = None if trust is None else pinned(trust)
         self._url = url
         self._token = token
         self._on_control = on_control
@@ -165,6 +165,11 @@ class RigLink:
     def send_state(self, changes: dict[str, Any]) -> None:
         """Send fields of the session (see `messages.SessionFields`), in order and without loss, also over a reconnection."""
         self._outbox.put_state(changes)
+
+    def send_text(self, text: str) -> None:
+        """Send a text message that is worth nothing to a later connection, and so is dropped where there is none."""
+        if self.connected:
+            self._outbox.put_text(text)
 
     def close(self) -> None:
         """Send the texts that wait, hang up and wait for the threads. May be called twice."""
@@ -288,7 +293,7 @@ class RigLink:
             _logger.error("%s", self.refused)
 
 
-def _pinned(certificate: str) -> ssl.SSLContext:
+def pinned(certificate: str) -> ssl.SSLContext:
     """Return a context that takes one certificate, and that one only."""
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
     context.check_hostname = False

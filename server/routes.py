@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated, Any, Final
 
 from fastapi import APIRouter, Depends, HTTPException, Request, Response
-from fastapi.responses import FileResponse, JSONResponse, PlainTextResponse, RedirectResponse
+from fastapi.responses import FileResponse, JSONResponse, PlainTextResponse
 from starlette.staticfiles import StaticFiles
 
 from server.access import Access, known, needs
@@ -29,7 +29,7 @@ class Bundle(StaticFiles):
         """Skip the base's check that the folder exists."""
 
 
-def page_routes(web_folder: Path, models_folder: Path, console_url: str | None, access: Access) -> APIRouter:
+def page_routes(web_folder: Path, models_folder: Path) -> APIRouter:
     """Return the pages and the models."""
     router = APIRouter(include_in_schema=False)
     models = Bundle(directory=models_folder, check_dir=False)
@@ -50,13 +50,7 @@ def page_routes(web_folder: Path, models_folder: Path, console_url: str | None, 
 
     @router.get("/replay/{name}")
     def replay(name: str) -> Response:
-        return page("ar.html")
-
-    @router.get("/console", dependencies=[Depends(needs(access, "operate"))])
-    def console() -> Response:
-        if console_url is None:
-            return PlainTextResponse("The operator's console is not running.", 404)
-        return RedirectResponse(console_url)
+        return page("replay.html")
 
     @router.get("/models/{name}.glb")
     async def model(name: str, request: Request) -> Response:

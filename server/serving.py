@@ -12,6 +12,7 @@ from assets.site import Site
 from server.access import Access
 from server.app import create_app
 from server.configuration import Configuration
+from server.console.hosting import ConsoleHost, Link
 from server.errors import ServerError
 from server.grants import Grant
 from server.installing import Installer
@@ -78,6 +79,7 @@ class Serving:
             sessions=sessions,
             store=store,
             replays=replays,
+            console=ConsoleHost(site.folder, lambda: self._console_link(tls)),
         )
         self._server = WebServer(app, configuration.host, configuration.port, tls)
         self._installer = None if self._authority is None else self._beside(self._authority, configuration, hosts)
@@ -101,6 +103,11 @@ class Serving:
         """Return a session's address for a rig of our own, and its token."""
         signer = self._access.signer
         return self._server.rig_url(session), signer.issue("rig", int(signer.now_s()) + _YEAR_S, session)
+
+    def _console_link(self, tls: Tls | None) -> Link:
+        signer = self._access.signer
+        token = signer.issue("operator", int(signer.now_s()) + _YEAR_S, None)
+        return Link(self.url, token, None if tls is None else tls.own_pem())
 
     @property
     def how_to_trust(self) -> list[str]:

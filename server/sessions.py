@@ -12,7 +12,8 @@ from server import messages
 from server.company import Watchers
 from server.errors import ServerFull, UnknownSession
 from server.fanout import Mailbox
-from server.messages import ControlReply, ControlRequest, Look, StateUpdate
+from server.grants import ABILITIES
+from server.messages import ControlReply, ControlRequest, Figures, Look, StateUpdate
 from server.privacy import without_picture
 from server.traffic import Tally, Traffic
 from server.wire import decode_frame, decode_pose, is_frame, keep_seek
@@ -41,6 +42,7 @@ _DEFAULTS: Final[dict[str, Any]] = {
     "health": {},
     "sharing": False,
 }
+_OPERATORS: Final = ("settings", "figures")
 _Later = Callable[[Callable[[], None]], object]
 
 
@@ -77,6 +79,7 @@ class Session:
         self.tally = Tally()
         """What went to viewers."""
         self.viewers: set[Mailbox] = set()
+        self._figure_readers: set[Mailbox] = set()
         self._watchers = Watchers()
         self.title: str | None = None
         """What an operator calls it, in the place of its name."""
@@ -140,6 +143,9 @@ class Session:
         message = messages.parse_from_rig(text)
         if isinstance(message, StateUpdate):
             self._change(message.changes())
+        elif isinstance(message, Figures):
+            for viewer in self._figure_readers:
+                viewer.put_text(text)
         else:
             self._relay_reply(message)
 
@@ -189,6 +195,7 @@ class Session:
     def leave(self, viewer: Mailbox) -> None:
         """Forget a viewer and what it asked for."""
         self.viewers.discard(viewer)
+        self._figure_readers.discard(viewer)
         self._watchers.leave(viewer)
         self._pending = {key: asked for key, asked in self._pending.items() if asked[0] is not viewer}
 
@@ -199,16 +206,24 @@ class Session:
 
     def control(self, viewer: Mailbox, request: ControlRequest) -> None:
         """Forward a viewer's request to the rig under a number of our own: two viewers may choose the same."""
-        if self._rig is None or len(self._pending) >= MAX_PENDING:
-            error = "No rig is connected." if self._rig is None else "The rig is busy: try again."
+        error = self._refusal(viewer, request)
+        if error is not None or self._rig is None:
+            error = error or "No rig is connected."
             viewer.put_text(messages.encode(ControlReply(request.request_id, ok=False, error=error)))
             return
+        if request.action == "figures":
+            self._figure_readers.add(viewer)
         self._requests += 1
         key = str(self._requests)
         self._pending[key] = (viewer, request.request_id)
         self._rig.put_text(messages.encode(ControlRequest(key, request.action, request.value)))
 
     # -----------------------------------------------------------------------------------------------------------------
+
+    def _refusal(self, viewer: Mailbox, request: ControlRequest) -> str | None:
+        if request.action in _OPERATORS and "operate" not in ABILITIES[viewer.role]:
+            return "Only operators look into the tracker and change its settings."
+        return "The rig is busy: try again." if len(self._pending) >= MAX_PENDING else None
 
     def rename(self, title: str) -> None:
         """Call it something; nothing for its name again. Its address stays: rigs and viewers need not know."""

@@ -1,4 +1,4 @@
-"""Server, replay and console in one process: what `agora demo` and `agora replay` run."""
+"""Server and replay in one process: what `agora demo` and `agora replay` run."""
 
 from pathlib import Path
 from types import TracebackType
@@ -25,7 +25,6 @@ class Showing:
             PortInUse: The port is taken.
         """
         self._session = session_name(log.name)
-        console = LocalServer.new_console(site)
         self._replay = Replay(
             log,
             settings,
@@ -33,9 +32,8 @@ class Showing:
             ground_z_m=build_terrain(site).ground_z_m,
             eyes_z_m=eye_heights(site),
             eye_height_m=site.eye_height_m,
-            console=console,
         )
-        self._server = LocalServer(site, console, port=port, web=web, logs={self._session: log.path})
+        self._server = LocalServer(site, port=port, web=web, logs={self._session: log.path})
 
     @property
     def url(self) -> str:

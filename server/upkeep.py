@@ -1,4 +1,4 @@
-"""What a server does by itself while it runs: look after its replays, and delete walks that are kept no longer."""
+"""What a server does by itself while it runs: look after its replays and its console, and delete walks that are kept no longer."""
 
 import asyncio
 import logging
@@ -6,6 +6,7 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 from typing import Final
 
+from server.console.hosting import ConsoleHost
 from server.log_store import LogStore
 from server.replays import Replays
 
@@ -16,9 +17,9 @@ _EXPIRE_EVERY: Final = 600
 
 
 @asynccontextmanager
-async def upkeep(store: LogStore | None, replays: Replays | None) -> AsyncIterator[None]:
-    """Keep up while the context is open; leaving it ends all replays."""
-    task = asyncio.create_task(_keep_up(store, replays))
+async def upkeep(store: LogStore | None, replays: Replays | None, console: ConsoleHost | None) -> AsyncIterator[None]:
+    """Keep up while the context is open; leaving it ends all replays, and the console."""
+    task = asyncio.create_task(_keep_up(store, replays, console))
     try:
         yield
     finally:
@@ -27,14 +28,18 @@ async def upkeep(store: LogStore | None, replays: Replays | None) -> AsyncIterat
             await task
         if replays is not None:
             replays.close()
+        if console is not None:
+            console.close()
 
 
-async def _keep_up(store: LogStore | None, replays: Replays | None) -> None:
+async def _keep_up(store: LogStore | None, replays: Replays | None, console: ConsoleHost | None) -> None:
     turn = 0
     while True:
         try:
             if replays is not None:
                 replays.look_after()
+            if console is not None:
+                console.look_after()
             if store is not None and turn % _EXPIRE_EVERY == 0:
                 for name in await asyncio.to_thread(store.expire):
                     _logger.info("a walk was deleted: its time is over", extra={"log": name})

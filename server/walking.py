@@ -82,7 +82,6 @@ class Walking:
             InputError: What is asked for cannot be.
             PortInUse: The port is taken.
         """
-        console = None if web is None else LocalServer.new_console(site)
         self._rig_url = None if server_url is None else rig_url(server_url, session)
         placing = Placing(
             origin_of(site),
@@ -93,8 +92,8 @@ class Walking:
             settings.height,
         )
         self._server = None
-        if web is not None and console is not None:
-            self._server = LocalServer(site, console, port=port, web=web)
+        if web is not None:
+            self._server = LocalServer(site, port=port, web=web)
             self._rig_url, token = self._server.rig_url(session), self._server.rig_token(session)
         self._token, self._session = token, session
         try:
@@ -108,7 +107,6 @@ class Walking:
                 record=settings.record,
                 about={"agora": version("agora"), **(settings.about or {})},
                 rig_file=settings.rig_file,
-                console=console,
             )
         except BaseException:
             if self._server is not None:

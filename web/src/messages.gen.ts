@@ -45,8 +45,18 @@ export interface TakeBack {
 export interface ControlRequest {
   readonly type: "control";
   readonly request_id: string;
-  readonly action: "align" | "estimator" | "pause" | "play" | "seek" | "share" | "speed";
-  /** Seconds for `seek`, a factor for `speed`, a name for `estimator`, an alignment for `align`, whether to for `share`. */
+  readonly action:
+    | "align"
+    | "estimator"
+    | "figures"
+    | "loop"
+    | "pause"
+    | "play"
+    | "seek"
+    | "settings"
+    | "share"
+    | "speed";
+  /** Seconds for `seek`, a factor for `speed`, a name for `estimator`, an alignment for `align`, whether to for `loop` and `share`, `KEY=VALUE` for `settings`, and an empty text for the usual ones again. */
   readonly value?: boolean | number | string | Tap | Here | TakeBack | null;
 }
 
