@@ -53,10 +53,11 @@ class FigureTeller:
     def _take(self, update: Update) -> None:
         while self._updates and self._updates[-1].t_s >= update.t_s:
             self._updates.pop()  # the estimator was taken back, and works that time out once more
+        self._told = min(self._told, len(self._updates))
         self._updates.append(update)
-        forgotten = max(0, len(self._updates) - _KEPT)
-        del self._updates[:forgotten]
-        self._told = max(0, min(self._told, len(self._updates)) - forgotten)
+        if len(self._updates) > _KEPT:
+            del self._updates[0]
+            self._told = max(0, self._told - 1)
 
     def _update(self, innovation: Innovation) -> Update:
         return Update(

@@ -30,7 +30,7 @@ def rejected_of(walk: Walk) -> str:
     counts = walk.history.rejected
     if not counts:
         return "Every measurement was used so far."
-    rows = [f"| {plain(reason).replace('_', ' ')} | {count} |" for reason, count in sorted(counts.items())]
+    rows = [f"| {plain(reason.replace('_', ' '))} | {count} |" for reason, count in sorted(counts.items())]
     return "\n".join(["| Not used, because | times |", "| --- | ---: |", *rows])
 
 
