@@ -68,13 +68,8 @@ def shots(browser: Browser, url: str) -> Iterator[Shot]:
         page.ask("agora.ready")
         page.ask(ALONE)
         for view in views:
-            page.ask("id => { const tour = document.querySelector('#tour'); tour.value = id; tour.onchange(); }", view)
             for suffix in ("", ".evidence"):
-                page.ask(
-                    "on => { const box = document.querySelector('#evidence'); box.checked = on; box.onchange(); }",
-                    suffix != "",
-                )
-                page.until("agora.stats().whole")
+                page.go(f"view={view}" + ("&evidence=1" if suffix else ""))
                 raw = np.frombuffer(page.page.screenshot(), np.uint8)
                 picture = np.asarray(cv2.imdecode(raw, cv2.IMREAD_COLOR), np.uint8)
                 yield Shot(f"{model}.{view}{suffix}", picture, page.stats())

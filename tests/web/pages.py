@@ -27,6 +27,13 @@ _READ = """([width, height]) => {
     return btoa(text);
 }"""
 
+_GO = """view => new Promise(resolve => {
+    const hash = `#${view}`;
+    if (location.hash === hash) return resolve();
+    addEventListener("hashchange", () => resolve(), { once: true });
+    location.hash = hash;
+})"""
+
 
 class ArPage:
     """One AR page and a record of its messages."""
@@ -67,6 +74,16 @@ class ArPage:
         while not self.ask(expression):
             assert monotonic() < deadline, f"waited in vain for {expression}; the page is at {self.state()}"
             self.page.wait_for_timeout(20)
+
+    def go(self, view: str) -> None:
+        """On the start page: take what stands behind the `#` of an address, and wait until it is drawn as finely as it can be."""
+        self.ask(_GO, view)
+        self.settle()
+
+    def settle(self) -> None:
+        """On the start page: wait until all that was asked for is drawn."""
+        self.ask("agora.ready")
+        self.until("agora.stats()?.whole")
 
     def until_drawn(self) -> None:
         """Wait for the first picture, the model and the session's state."""

@@ -36,8 +36,10 @@ export class Places {
           );
     this.search.placeholder = say("places.find");
     this.search.oninput = () => this.fill();
-    this.search.onkeydown = ({ key }) => {
-      if (key === "Enter") this.list.querySelector("button")?.click();
+    this.search.onkeydown = (event) => {
+      if (event.key !== "Enter") return;
+      event.preventDefault(); // the focus goes elsewhere, and the key would press what it goes to
+      this.list.querySelector("button")?.click();
     };
     this.fill();
   }
@@ -53,10 +55,10 @@ export class Places {
     this.map?.show([eye.place_site_m[0], eye.place_site_m[1]], eye.heading_rad, HALF_RAD, null);
   }
 
-  /** Tell how far away everything is now, and wait for words. */
+  /** Tell how far away everything is now, and wait for words; on a touch screen that would bring its keyboard up. */
   open(): void {
     this.fill();
-    this.search.focus();
+    if (matchMedia("(pointer: fine)").matches) this.search.focus();
   }
 
   private fill(): void {

@@ -57,11 +57,11 @@ export function walk(
   const strides = Math.ceil(length_m / STRIDE_M);
   let feet = walker.feet_site_m;
   for (let i = 0; i < strides; i++) feet = stride(feet, Math.atan2(v_e, v_n), length_m / strides, ground);
-  const came_m = Math.hypot(feet[0] - walker.feet_site_m[0], feet[1] - walker.feet_site_m[1]);
-  // who is held up by a wall does not shoot off when it ends
-  const kept = length_m > 0 ? Math.min(1, came_m / length_m) : 1;
   const eyes = feet[2] + eyeHeight_m + (walker.eyes_m - feet[2] - eyeHeight_m) * Math.exp(-dt / RISE_S);
-  return { feet_site_m: feet, v_e_m_s: v_e * kept, v_n_m_s: v_n * kept, eyes_m: eyes };
+  if (strides === 0) return { feet_site_m: feet, v_e_m_s: v_e, v_n_m_s: v_n, eyes_m: eyes };
+  // as fast as one came forward: who was held up by a wall does not shoot off when it ends
+  const [came_e, came_n] = [feet[0] - walker.feet_site_m[0], feet[1] - walker.feet_site_m[1]];
+  return { feet_site_m: feet, v_e_m_s: came_e / dt, v_n_m_s: came_n / dt, eyes_m: eyes };
 }
 
 /** Whether nothing changes any more without an intent. */
