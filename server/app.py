@@ -10,6 +10,7 @@ from fastapi.telemetry import TelemetryConfig
 from starlette.types import Scope
 
 from server.access import Access
+from server.cluster.relay import Relay
 from server.console.bridge import console_routes
 from server.console.hosting import ConsoleHost
 from server.entrance import entrance_routes
@@ -49,6 +50,7 @@ def create_app(
     sessions: Sessions | None = None,
     store: LogStore | None = None,
     replays: Replays | None = None,
+    relay: Relay | None = None,
 ) -> FastAPI:
     """Return the server's application; `app.state` has its `sessions`, its `access`, and its `visitors` for the door.
 
@@ -65,6 +67,7 @@ def create_app(
         sessions: The server's; None for fresh ones.
         store: Where uploaded walks are kept, in the place of `logs`.
         replays: Of the walks in the store.
+        relay: Joins `sessions` to those of other servers.
     """
     sessions = sessions or Sessions(monotonic_ns)
     # The interactive documentation loads its scripts from elsewhere, so there is none; /openapi.json stays.
@@ -73,11 +76,11 @@ def create_app(
         docs_url=None,
         redoc_url=None,
         telemetry=NO_TELEMETRY,
-        lifespan=lambda app: upkeep(store, replays, console),
+        lifespan=lambda app: upkeep(store, replays, console, relay),
     )
     app.state.sessions, app.state.access = sessions, access
     app.state.visitors = Visitors(limits or Limits(), monotonic)
-    app.include_router(api_routes(sessions, site, web_folder, access, alone=store is not None))
+    app.include_router(api_routes(sessions, site, web_folder, access, alone=store is not None, relay=relay))
     app.include_router(session_routes(sessions, access, replays))
     app.include_router(log_routes(logs or {} if store is None else store, access))
     if store is not None:

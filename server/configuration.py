@@ -64,6 +64,20 @@ class Configuration(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     replay_memory_mb: Annotated[
         int, Meta(ge=256, description="Memory of the process that reads an uploaded walk, 10^6 bytes of address space.")
     ] = 4000
+    bus: Annotated[
+        list[str],
+        Meta(description="Servers of NATS, tls://HOST:4222 each, that join this server to others: docs/scale.md."),
+    ] = []
+    bus_user: Annotated[str, Meta(description="As whom the bus is entered; empty where a certificate says it.")] = ""
+    bus_password_file: Annotated[str, Meta(description="A file with that user's password, and nothing else.")] = ""
+    bus_ca: Annotated[
+        str, Meta(description="Who vouches for the bus's servers, PEM; empty for this machine's authorities.")
+    ] = ""
+    bus_cert: Annotated[str, Meta(description="This server's certificate for the bus, PEM.")] = ""
+    bus_key: Annotated[str, Meta(description="Its key, PEM.")] = ""
+    bus_replicas: Annotated[
+        int, Meta(ge=1, le=5, description="On how many servers of NATS the sessions' state is kept.")
+    ] = 1
 
     @property
     def hosts(self) -> frozenset[str]:

@@ -10,6 +10,7 @@ from fastapi.responses import FileResponse, JSONResponse, PlainTextResponse
 from starlette.staticfiles import StaticFiles
 
 from server.access import Access, known, needs
+from server.cluster.relay import Relay
 from server.grants import Grant
 from server.metrics import Metrics
 from server.sessions import NAME, Session, Sessions
@@ -65,7 +66,13 @@ def page_routes(web_folder: Path, models_folder: Path) -> APIRouter:
 
 
 def api_routes(
-    sessions: Sessions, site: Mapping[str, Any], web_folder: Path, access: Access, *, alone: bool = False
+    sessions: Sessions,
+    site: Mapping[str, Any],
+    web_folder: Path,
+    access: Access,
+    *,
+    alone: bool = False,
+    relay: Relay | None = None,
 ) -> APIRouter:
     """Return the JSON interface, health, readiness and metrics; `alone` is a server that is well without any walk."""
     router, page = APIRouter(), Metrics(sessions)
@@ -93,8 +100,13 @@ def api_routes(
 
     @router.get("/ready")
     async def ready() -> JSONResponse:
-        built = (web_folder / "ar.html").is_file()
-        reason = _NOT_BUILT if not built else "The server is being stopped." if sessions.stopping else None
+        reason = None
+        if not (web_folder / "ar.html").is_file():
+            reason = _NOT_BUILT
+        elif sessions.stopping:
+            reason = "The server is being stopped."
+        elif relay is not None and not relay.ready:
+            reason = "The other servers are not reached yet."
         return JSONResponse({"ok": reason is None, "reason": reason}, 503 if reason else 200)
 
     @router.get("/metrics", dependencies=[Depends(needs(access, "operate"))])

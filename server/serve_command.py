@@ -29,6 +29,12 @@ def serve(
     tls_local: Annotated[
         bool | None, typer.Option("--tls-local", help="TLS by an authority of its own, for a network without others.")
     ] = None,
+    bus: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="A server of NATS that joins this one to others, tls://HOST:4222; may be repeated.", metavar="URL"
+        ),
+    ] = None,
     log_format: Annotated[Literal["text", "json"] | None, typer.Option(help="Of the journal.")] = None,
     print_config: Annotated[
         bool, typer.Option("--print-config", help="Print the configuration as a file, explained, and end.")
@@ -49,6 +55,7 @@ def serve(
         "tls_cert": None if tls_cert is None else str(tls_cert),
         "tls_key": None if tls_key is None else str(tls_key),
         "tls_local": tls_local,
+        "bus": bus or None,
         "log_format": log_format,
     }
     configuration = read_configuration(config, os.environ, options)

@@ -1,6 +1,7 @@
 """A server for many rigs and many viewers, without a walk of its own: what `agora serve` runs."""
 
 import logging
+import secrets
 from contextlib import ExitStack
 from datetime import UTC, datetime
 from pathlib import Path
@@ -11,6 +12,10 @@ from typing import Final, Self
 from assets.site import Site
 from server.access import Access
 from server.app import create_app
+from server.cluster.bus import LocalBus
+from server.cluster.nats_bus import NatsBus
+from server.cluster.nats_settings import NatsSettings
+from server.cluster.relay import Relay
 from server.configuration import Configuration
 from server.console.hosting import ConsoleHost, Link
 from server.errors import ServerError
@@ -80,6 +85,7 @@ class Serving:
             store=store,
             replays=replays,
             console=ConsoleHost(site.folder, lambda: self._console_link(tls)),
+            relay=_relay_of(configuration, sessions),
         )
         self._server = WebServer(app, configuration.host, configuration.port, tls)
         self._installer = None if self._authority is None else self._beside(self._authority, configuration, hosts)
@@ -133,6 +139,20 @@ class Serving:
         _logger.info("stopping")
         self._stack.close()
         _logger.info("stopped")
+
+
+def _relay_of(configuration: Configuration, sessions: Sessions) -> Relay:
+    settings = NatsSettings(
+        urls=configuration.bus,
+        user=configuration.bus_user,
+        password_file=configuration.bus_password_file,
+        ca=configuration.bus_ca,
+        certificate=configuration.bus_cert,
+        key=configuration.bus_key,
+        replicas=configuration.bus_replicas,
+    )
+    # a server that is started anew is another one: its rigs come back to it as they would to any
+    return Relay(sessions, NatsBus(settings) if configuration.bus else LocalBus(), secrets.token_hex(8))
 
 
 def _authority_of(configuration: Configuration) -> LocalAuthority | None:

@@ -13,6 +13,7 @@ from server.company import Watchers
 from server.errors import ServerFull, UnknownSession
 from server.fanout import Mailbox
 from server.grants import ABILITIES
+from server.listener import Listener, Nobody
 from server.messages import ControlReply, ControlRequest, Figures, Look, StateUpdate
 from server.privacy import without_picture
 from server.traffic import Tally, Traffic
@@ -64,8 +65,10 @@ class Session:
         max_viewers: int = MAX_VIEWERS,
         sent: Callable[[bool, int], None] = lambda is_frame, t_ns: None,
         later: _Later = next_turn,
+        listener: Listener | None = None,
     ) -> None:
         self.name = name
+        self._listener = listener or Nobody()
         self._max_viewers, self._sent, self._later = max_viewers, sent, later
         self.frames = 0
         """Frames that came from the rig."""
@@ -81,6 +84,8 @@ class Session:
         self.viewers: set[Mailbox] = set()
         self._figure_readers: set[Mailbox] = set()
         self._watchers = Watchers()
+        self.elsewhere = False
+        """Whether the word on it is with another server, which its rig was last connected to."""
         self.title: str | None = None
         """What an operator calls it, in the place of its name."""
         self._fields = dict(_DEFAULTS)
@@ -100,6 +105,25 @@ class Session:
     def connected(self) -> bool:
         """Whether a rig is there."""
         return self._rig is not None
+
+    @property
+    def fields(self) -> dict[str, Any]:
+        """What its rig has told, see `messages.SessionFields`."""
+        return self._fields
+
+    @property
+    def newest_pose(self) -> bytes | None:
+        """The last that came by itself."""
+        return self._pose
+
+    def newest_frame(self, *, sees: bool, empty: bool = False) -> bytes | None:
+        """Return the last that came, as somebody may see it who does or does not see the walker's picture, or wants none."""
+        if self._frame is None:
+            return None
+        if (sees or self.sharing) and not empty:
+            return self._frame[1]
+        self._hidden = self._hidden or without_picture(self._frame[1])  # made once for all
+        return self._hidden
 
     @property
     def playing(self) -> bool:
@@ -128,7 +152,7 @@ class Session:
         if self._rig is not None:
             self._rig.close(REPLACED, "another rig took this session")
             self._fail_pending()
-        self._rig, self._came = rig, True
+        self._rig, self._came, self.elsewhere = rig, True, False
         self._change({"sharing": False})  # whoever had it may have shared; this rig says so itself, if it does
 
     def detach_rig(self, rig: Mailbox) -> None:
@@ -170,6 +194,17 @@ class Session:
         if not goes_already:
             self._later(self._fan_out)
 
+    def mirror(self, title: str | None, fields: dict[str, Any], rig: Mailbox | None) -> None:
+        """Be what the session is at the server where its rig is; `rig` is a way to that one, None where it has gone.
+
+        A rig that is connected here has been taken over by the other server, and is closed.
+        """
+        if self._rig is not None and self._rig is not rig:
+            self._rig.close(REPLACED, "another rig took this session")
+            self._fail_pending()
+        self._rig, self._came, self.elsewhere, self.title = rig, True, True, title
+        self._change(fields)
+
     def expect(self, fields: dict[str, Any]) -> None:
         """Note what is known of a rig that has not come yet (see `messages.SessionFields`)."""
         self._fields |= fields
@@ -191,12 +226,14 @@ class Session:
         self._show(viewer)
         if self._pose is not None:
             viewer.put_pose(self._pose)
+        self._listener.watched(self)
 
     def leave(self, viewer: Mailbox) -> None:
         """Forget a viewer and what it asked for."""
         self.viewers.discard(viewer)
         self._figure_readers.discard(viewer)
         self._watchers.leave(viewer)
+        self._listener.watched(self)
         self._pending = {key: asked for key, asked in self._pending.items() if asked[0] is not viewer}
 
     def look(self, viewer: Mailbox, look: Look, t_ns: int) -> None:
@@ -227,8 +264,9 @@ class Session:
 
     def rename(self, title: str) -> None:
         """Call it something; nothing for its name again. Its address stays: rigs and viewers need not know."""
-        self.title = title or None
-        self._tell()
+        if not self._listener.renames(self, title):
+            self.title = title or None
+            self._tell()
 
     def end(self, code: int, reason: str) -> None:
         """Tell viewers why it ends, and close them and the rig with that code."""
@@ -250,17 +288,18 @@ class Session:
         for news in (frame, pose):
             if news is not None:
                 self._tell_company(news[-1])
+        self._listener.fanned_out(self, frame is not None, pose is not None)
 
     def _show(self, viewer: Mailbox, t_ns: int | None = None) -> None:
         """Give a viewer the newest frame, as it may see it."""
-        if self._frame is None or viewer.frames_wanted == 0:
+        if viewer.frames_wanted == 0:
             return
-        frame_id, data = self._frame
+        data = self.newest_frame(sees=viewer.sees, empty=viewer.frames_wanted is not None)
+        if self._frame is None or data is None:
+            return
         if viewer.frames_wanted is not None:
             viewer.frames_wanted -= 1
-        if not (viewer.sees or self.sharing) or viewer.frames_wanted is not None:
-            self._hidden = data = self._hidden or without_picture(data)  # made once for all
-        viewer.put_frame(frame_id, data, t_ns)
+        viewer.put_frame(self._frame[0], data, t_ns)
 
     def _change(self, fields: dict[str, Any]) -> None:
         before = self.sharing
@@ -275,6 +314,7 @@ class Session:
         text = messages.state(self.describe())
         for viewer in self.viewers:
             viewer.put_text(text)
+        self._listener.changed(self)
 
     def _tell_company(self, t_ns: int) -> None:
         """Tell everybody who watches, where that is news."""
@@ -310,6 +350,8 @@ class Sessions:
         self.now_ns = now_ns
         """The clock that frames are stamped with."""
         self.traffic = Traffic()
+        self.listener: Listener = Nobody()
+        """Set before there are sessions."""
         self.stopping = False
         """Whether goodbye was said: the server takes nobody any more."""
         self._max_sessions, self._max_viewers, self._later = max_sessions, max_viewers, later
@@ -323,8 +365,12 @@ class Sessions:
 
     def end(self, name: str, code: int, reason: str) -> None:
         """End a session: viewers and rig are told why, and it is forgotten; `UnknownSession` where there is none."""
-        self.get(name).end(code, reason)
-        del self._sessions[name]
+        if not self.listener.ends(self.get(name), reason):
+            self.forget(name, code, reason)
+
+    def forget(self, name: str, code: int, reason: str) -> None:
+        """End it here, whoever has it."""
+        self._sessions.pop(name).end(code, reason)
 
     def get(self, name: str) -> Session:
         """Return a session; `UnknownSession` where no rig ever opened it."""
@@ -341,10 +387,16 @@ class Sessions:
         """
         if not NAME.fullmatch(name):
             raise UnknownSession("A session's name is 1 to 64 letters, digits, dots, dashes or underscores.")
-        if name not in self._sessions:
+        if name not in self._sessions or self._sessions[name].elsewhere:
             self._make_room()
-            self._sessions[name] = Session(name, self._max_viewers, self._sent, self._later)
-        return self._sessions[name]
+        return self._sessions.setdefault(name, self._new(name))
+
+    def mirror(self, name: str) -> Session:
+        """Return the session of a rig that is at another server, new if need be; it takes no place of those that rigs have here."""
+        return self._sessions.setdefault(name, self._new(name))
+
+    def _new(self, name: str) -> Session:
+        return Session(name, self._max_viewers, self._sent, self._later, self.listener)
 
     def say_goodbye(self) -> None:
         """Tell every viewer and every rig that the server stops; they may come again."""
@@ -362,9 +414,10 @@ class Sessions:
         durations.add((self.now_ns() - t_ns) * 1e-9)
 
     def _make_room(self) -> None:
-        if len(self._sessions) < self._max_sessions:
+        here = [session for session in self if not session.elsewhere]
+        if len(here) < self._max_sessions:
             return
-        idle = next((s for s in self if not s.connected), None)
+        idle = next((session for session in here if not session.connected), None)
         if idle is None:
             raise ServerFull(f"{self._max_sessions} rigs are connected already: try again when one has left.")
         self.end(idle.name, ENDED, "This walk has ended, and another has its place.")

@@ -1,4 +1,6 @@
-"""What a server does by itself while it runs: look after its replays and its console, and delete walks that are kept no longer."""
+"""What a server does by itself while it runs: look after its replays and its console, delete walks that are kept no longer, and
+keep up with other servers.
+"""
 
 import asyncio
 import logging
@@ -6,6 +8,7 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 from typing import Final
 
+from server.cluster.relay import Relay
 from server.console.hosting import ConsoleHost
 from server.log_store import LogStore
 from server.replays import Replays
@@ -17,15 +20,20 @@ _EXPIRE_EVERY: Final = 600
 
 
 @asynccontextmanager
-async def upkeep(store: LogStore | None, replays: Replays | None, console: ConsoleHost | None) -> AsyncIterator[None]:
+async def upkeep(
+    store: LogStore | None, replays: Replays | None, console: ConsoleHost | None, relay: Relay | None = None
+) -> AsyncIterator[None]:
     """Keep up while the context is open; leaving it ends all replays, and the console."""
-    task = asyncio.create_task(_keep_up(store, replays, console))
+    tasks = [asyncio.create_task(_keep_up(store, replays, console))]
+    if relay is not None:
+        tasks.append(asyncio.create_task(_keep_joined(relay)))
     try:
         yield
     finally:
-        task.cancel()
-        with suppress(asyncio.CancelledError):
-            await task
+        for task in tasks:
+            task.cancel()
+            with suppress(asyncio.CancelledError):
+                await task
         if replays is not None:
             replays.close()
         if console is not None:
@@ -46,4 +54,13 @@ async def _keep_up(store: LogStore | None, replays: Replays | None, console: Con
         except Exception:
             _logger.exception("the upkeep failed and goes on")
         turn += 1
+        await asyncio.sleep(_EVERY_S)
+
+
+async def _keep_joined(relay: Relay) -> None:
+    while True:
+        try:
+            await relay.run()
+        except Exception:
+            _logger.exception("the way to the other servers failed and is tried anew")
         await asyncio.sleep(_EVERY_S)

@@ -115,6 +115,9 @@ class _Server(uvicorn.Server):
             while not self._sessions.quiet and monotonic() < deadline:
                 await asyncio.sleep(0.01)
         await super().shutdown(sockets)
+        for connection in list(self.server_state.connections):
+            connection.transport.abort()  # a peer that reads nothing would keep its socket open
+        await asyncio.sleep(0)
 
 
 def _bind(host: str, port: int) -> socket.socket:

@@ -9,6 +9,8 @@ class Wire:
     def __init__(self, room: int = 1000) -> None:
         self.sent: list[str | bytes] = []
         self.on_free: Callable[[], None] = lambda: None
+        self.took: Callable[[str | bytes], None] = lambda message: None
+        """Called with each message that was sent."""
         self._room = room
 
     def free(self) -> bool:
@@ -18,6 +20,7 @@ class Wire:
         assert self._room > 0, "sent while the line was busy"
         self._room -= 1
         self.sent.append(message)
+        self.took(message)
 
     def make_room(self, messages: int = 1000) -> None:
         self._room = messages
