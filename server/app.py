@@ -19,6 +19,9 @@ from server.limits import Limits, Throttle, Visitors
 from server.log_routes import log_routes, upload_routes
 from server.log_store import LogStore
 from server.replays import Replays
+from server.reviewing.exported import Exporter
+from server.reviewing.reviews import Reviews
+from server.reviewing.routes import review_routes
 from server.routes import Bundle, api_routes, page_routes
 from server.session_routes import session_routes
 from server.sessions import Sessions
@@ -50,7 +53,12 @@ def create_app(
     sessions: Sessions | None = None,
     store: LogStore | None = None,
     replays: Replays | None = None,
+<<<<<<< server/app.py
+    site_folder: Path | None = None,
+    review_memory_bytes: int = 4 * 10**9,
+=======
     relay: Relay | None = None,
+>>>>>>> /tmp/w/E/theirs
 ) -> FastAPI:
     """Return the server's application; `app.state` has its `sessions`, its `access`, and its `visitors` for the door.
 
@@ -67,7 +75,12 @@ def create_app(
         sessions: The server's; None for fresh ones.
         store: Where uploaded walks are kept, in the place of `logs`.
         replays: Of the walks in the store.
+<<<<<<< server/app.py
+        site_folder: The site's own, for what replays' pages show beside the pictures; None for none of that.
+        review_memory_bytes: Of each process that reads a walk for that.
+=======
         relay: Joins `sessions` to those of other servers.
+>>>>>>> /tmp/w/E/theirs
     """
     sessions = sessions or Sessions(monotonic_ns)
     # The interactive documentation loads its scripts from elsewhere, so there is none; /openapi.json stays.
@@ -85,6 +98,11 @@ def create_app(
     app.include_router(log_routes(logs or {} if store is None else store, access))
     if store is not None:
         app.include_router(upload_routes(store, access, lambda name: _end_replays(replays, name)))
+    if site_folder is not None:
+        exporter = Exporter(web_folder, models_folder, site_folder, site)
+        reviews = Reviews(review_memory_bytes, lambda: sessions.stopping)
+        log_of = (logs or {}).get if replays is None else replays.log_of
+        app.include_router(review_routes(sessions, access, reviews, exporter, log_of))
     app.include_router(entrance_routes(access))
     app.include_router(page_routes(web_folder, models_folder))
     app.include_router(console_routes(console, access))

@@ -33,6 +33,7 @@ class LocalServer:
             access=self._access,
             console=ConsoleHost(site.folder, lambda: Link(self.url)),
             logs=logs,
+            site_folder=site.folder,
         )
         self._server = WebServer(app, "127.0.0.1", port)
 

@@ -102,6 +102,11 @@ class Replays:
         _logger.info("a replay began", extra={"session": name, "log": log, "estimator": estimator})
         return name
 
+    def log_of(self, name: str) -> Path | None:
+        """Return the walk that a replay plays; None where there is no such replay, or the walk has gone."""
+        running = self._running.get(name)
+        return None if running is None else self._store.get(running.log)
+
     def stop(self, name: str, reason: str) -> None:
         """End a replay and its session; nothing happens where there is none of that name."""
         running = self._running.pop(name, None)

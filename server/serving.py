@@ -84,6 +84,8 @@ class Serving:
             sessions=sessions,
             store=store,
             replays=replays,
+            site_folder=site.folder,
+            review_memory_bytes=configuration.replay_memory_mb * _MB,
             console=ConsoleHost(site.folder, lambda: self._console_link(tls)),
             relay=_relay_of(configuration, sessions),
         )

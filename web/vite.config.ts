@@ -11,7 +11,8 @@ function pages(): Plugin {
     name: "agora-pages",
     configureServer(server) {
       server.middlewares.use((request, _response, next) => {
-        if (/^\/(ar|replay\/[^/]+)\/?(\?|$)/.test(request.url ?? "")) request.url = "/ar.html";
+        const name = /^\/(ar|replay)(\/[^/]+)?\/?(\?|$)/.exec(request.url ?? "")?.[1];
+        if (name !== undefined) request.url = `/${name}.html`;
         next();
       });
     },
@@ -27,7 +28,12 @@ export default defineConfig({
     target: "es2022",
     chunkSizeWarningLimit: 900, // three.js is most of it
     rolldownOptions: {
-      input: { index: here("index.html"), ar: here("ar.html"), worker: here("src/offline/worker.ts") },
+      input: {
+        index: here("index.html"),
+        ar: here("ar.html"),
+        replay: here("replay.html"),
+        worker: here("src/offline/worker.ts"),
+      },
       output: {
         // a service worker is known by its address
         entryFileNames: ({ name }) => (name === "worker" ? "worker.js" : "assets/[name]-[hash].js"),

@@ -65,6 +65,7 @@ class Exporter:
             "name": name,
             "estimator": head.estimator,
             "duration_s": head.duration_s,
+            "positions_s": head.positions_s,
             "site": self._site(),
             "timeline": json.loads(timeline),
             "course": None if course is None else json.loads(course),

@@ -17,7 +17,7 @@ from server.privacy import without_picture
 from server.push import frame_message
 from server.reviewing.jobs import PackJob
 from server.standing import eye_heights, origin_of
-from server.wire import FRAME_HEADER_BYTES
+from server.wire import FRAME_HEADER_BYTES, decode_frame
 from tracker.blank import BlankCamera
 from tracker.errors import MalformedInput
 from tracker.evaluate import make_pipeline
@@ -38,6 +38,8 @@ class Packed(msgspec.Struct, frozen=True):
 
     estimator: str
     duration_s: float
+    positions_s: list[float]
+    """Of each message: seconds from the walk's start."""
 
 
 def packed(log: Log, job: PackJob) -> bytes:
@@ -55,8 +57,10 @@ def packed(log: Log, job: PackJob) -> bytes:
     every = max(1, -(-size // job.max_bytes))
     if every > 1 and len(messages) / every < _LEAST_HZ * log.info.duration_s:
         raise LogRefused(413, _too_long(size, job))
-    head = msgspec.json.encode(Packed(estimator, log.info.duration_s)) + b"\n"
-    return head + b"".join(_LENGTH.pack(len(message)) + message for message in messages[::every])
+    kept = messages[::every]
+    positions_s = [round(decode_frame(message)[0].position_s, 4) for message in kept]
+    head = msgspec.json.encode(Packed(estimator, log.info.duration_s, positions_s)) + b"\n"
+    return head + b"".join(_LENGTH.pack(len(message)) + message for message in kept)
 
 
 def unpacked(pack: bytes) -> tuple[Packed, list[bytes]]:

@@ -4,6 +4,7 @@ import asyncio
 import signal
 import subprocess
 from collections import OrderedDict
+from collections.abc import Callable
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -20,6 +21,8 @@ _KEPT_BYTES: Final = 64 * 10**6
 #: Processes at a time: a replay must go on beside them.
 _AT_A_TIME: Final = 1
 _MOST_WAITING: Final = 32
+#: How often who waits looks whether it should.
+_LOOK_UP_S: Final = 0.5
 
 
 class _Key(NamedTuple):
@@ -33,9 +36,9 @@ class _Key(NamedTuple):
 class Reviews:
     """Answers by job. Whoever asks for what is being worked out waits for the same process."""
 
-    def __init__(self, memory_bytes: int) -> None:
-        """`memory_bytes` is what each process may take."""
-        self._memory_bytes = memory_bytes
+    def __init__(self, memory_bytes: int, stopping: Callable[[], bool] = lambda: False) -> None:
+        """`memory_bytes` is what each process may take; `stopping` says whether nobody is to wait any longer."""
+        self._memory_bytes, self._stopping = memory_bytes, stopping
         self._kept: OrderedDict[_Key, bytes] = OrderedDict()
         self._under_way: dict[_Key, asyncio.Task[bytes]] = {}
         self._turn = asyncio.Semaphore(_AT_A_TIME)
@@ -60,12 +63,18 @@ class Reviews:
                 raise LogRefused(503, "The server is busy with other walks: try again in a minute.")
             task = self._under_way[key] = asyncio.create_task(self._work_out(key))
             task.add_done_callback(lambda done: self._settled(key, done))
-        return await asyncio.shield(self._under_way[key])
+        return await self._awaited(self._under_way[key])
 
     def close(self) -> None:
         """End all processes."""
         for process in list(self._processes):
             process.kill()
+
+    async def _awaited(self, task: "asyncio.Task[bytes]") -> bytes:
+        while not (await asyncio.wait({task}, timeout=_LOOK_UP_S))[0]:
+            if self._stopping():
+                raise LogRefused(503, "The server is being stopped.")
+        return task.result()
 
     async def _work_out(self, key: _Key) -> bytes:
         async with self._turn:

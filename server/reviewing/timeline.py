@@ -4,7 +4,7 @@ No estimator has a part in it: changes of motion models are in `course.py`.
 """
 
 from collections.abc import Iterable
-from math import hypot, sqrt
+from math import ceil, hypot, sqrt
 from typing import Final, Literal
 
 import msgspec
@@ -66,7 +66,8 @@ def timeline_of(log: Log) -> Timeline:
     if info.truncated:
         events.append(Event("cut", info.duration_s, info.duration_s))
     events.sort(key=lambda event: (event.from_s, event.kind))
-    return Timeline(info.duration_s, [round(t_s, 4) for t_s in pictures_s], events, info.has_truth)
+    # upwards: at the place that is told, the picture is there
+    return Timeline(info.duration_s, [ceil(t_s * 1e4) / 1e4 for t_s in pictures_s], events, info.has_truth)
 
 
 class _Notes:

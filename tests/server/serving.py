@@ -31,6 +31,7 @@ def serving(folder: Path, tls: Tls | None = None, **options: Any) -> Iterator[We
     models.mkdir(exist_ok=True)
     (web / "index.html").write_text("<title>index</title>")
     (web / "ar.html").write_text("<title>ar</title>")
+    (web / "replay.html").write_text("<title>replay</title>")
     (web / "assets" / "ar.js").write_text("0")
     (models / "today.glb").write_bytes(b"glTF")
     app = create_app(web_folder=web, models_folder=models, site={"name": "Square"}, **{"access": ACCESS, **options})

@@ -48,7 +48,7 @@ def long_lived(tmp_path_factory: pytest.TempPathFactory) -> Iterator[WebServer]:
     [
         ("/", 200, "index"),
         ("/ar", 200, "<title>ar"),
-        ("/replay/walk-1", 200, "<title>ar"),
+        ("/replay/walk-1", 200, "<title>replay"),
         ("/assets/ar.js", 200, "0"),
         ("/models/today.glb", 200, "glTF"),
         ("/models/none.glb", 404, ""),

@@ -6,11 +6,11 @@
 
 import type { Playback, Session } from "./protocol";
 
-export type Action = "play" | "pause" | "seek" | "speed" | "estimator";
+export type Action = "play" | "pause" | "seek" | "speed" | "loop" | "estimator";
 
 export interface Request {
   readonly action: Action;
-  readonly value: number | string | null;
+  readonly value: number | string | boolean | null;
 }
 
 export const SPEEDS: readonly number[] = [0.25, 0.5, 1, 2, 4];
