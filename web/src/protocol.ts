@@ -2,7 +2,7 @@
  * The text messages and HTTP answers: JSON to values, or one `ProtocolError`. No socket and no DOM in here.
  */
 
-import type { Hello, Playback, SensorHealth, Session } from "./messages.gen";
+import type { Companion, Hello, Playback, SensorHealth, Session } from "./messages.gen";
 
 export type { Playback, SensorHealth, Session };
 
@@ -15,9 +15,15 @@ export interface Reply {
   readonly didSeek: boolean;
 }
 
-/** `role` comes with the first message alone: as whom this page is here. */
+/** `role` and `number` come with the first message alone: as whom this page is here, and as the how manieth. */
 export type StateMessage =
-  | { readonly type: "session"; readonly session: Session; readonly role: Hello["role"] | null }
+  | {
+      readonly type: "session";
+      readonly session: Session;
+      readonly role: Hello["role"] | null;
+      readonly number: number | null;
+    }
+  | { readonly type: "company"; readonly watching: number; readonly seen: readonly Companion[] }
   | { readonly type: "reply"; readonly reply: Reply };
 
 /** Text that is not what it claims to be. */
@@ -36,9 +42,20 @@ export function parseState(text: string): StateMessage | null {
   const message = fields(parseJson(text), "message");
   switch (message["type"]) {
     case "hello":
-      return { type: "session", session: parseSession(message["session"]), role: parseRole(message["role"]) };
+      return {
+        type: "session",
+        session: parseSession(message["session"]),
+        role: parseRole(message["role"]),
+        number: number(message["number"], 0) || null,
+      };
     case "state":
-      return { type: "session", session: parseSession(message["session"]), role: null };
+      return { type: "session", session: parseSession(message["session"]), role: null, number: null };
+    case "company":
+      return {
+        type: "company",
+        watching: number(message["watching"], 0),
+        seen: list(message["seen"]).flatMap(parseCompanion),
+      };
     case "reply":
       return {
         type: "reply",
@@ -83,6 +100,17 @@ const ROLES: readonly Hello["role"][] = ["admin", "local", "operator", "rig", "v
 /** Read a role; one that this page does not know may do no more than watch. */
 function parseRole(value: unknown): Hello["role"] {
   return ROLES.find((role) => role === value) ?? "viewer";
+}
+
+/** Read one who watches; what has no place is nobody. */
+function parseCompanion(value: unknown): Companion[] {
+  const companion = fields(value, "companion");
+  const eye = fields(companion["eye"], "eye");
+  const [e, n, u] = list(eye["place_site_m"]).map((entry) => number(entry, Number.NaN));
+  const told = number(companion["number"], Number.NaN);
+  if (e === undefined || n === undefined || u === undefined || !Number.isFinite(e + n + u + told)) return [];
+  const heading_rad = number(eye["heading_rad"], 0);
+  return [{ number: told, eye: { place_site_m: [e, n, u], heading_rad, pitch_rad: number(eye["pitch_rad"], 0) } }];
 }
 
 /** Read how sensors are; what is not that is left out. */

@@ -1,5 +1,6 @@
 /** The start page put together: the square, the ways through it, and the tools beside it. DOM and the stage. */
 
+import { Beside } from "../beside/beside";
 import { Card } from "../card";
 import { element, tell } from "../dom";
 import type { Vector3 } from "../frames";
@@ -36,6 +37,8 @@ export class Browse {
   private readonly guide: Guide;
   private readonly places: Places;
   private readonly sheets: Sheets;
+  /** Those who walk now; null where the address wants the square alone. */
+  readonly beside: Beside | null;
   private readonly grounds = new Map<string, Ground>();
   /** The stop that is stood at, and the eye that stands there: a finer ground may be a little higher. */
   private stood: { readonly stop: View; eye: Eye } | null = null;
@@ -81,6 +84,8 @@ export class Browse {
       this.places.show(this.stage.eye);
       return false;
     });
+    const isAlone = new URLSearchParams(location.search).get("walkers") === "0";
+    this.beside = isAlone ? null : new Beside(this.stage, site.eye_height_m);
     fillLegend(element("legend", HTMLElement), site);
     fillKeys(element("keys", HTMLElement));
     this.listen();
@@ -111,7 +116,7 @@ export class Browse {
   get stats(): Readonly<Record<string, unknown>> {
     const { stage, epochs } = this;
     const isWhole = epochs.isWhole && stage.isSettled;
-    return { ...stage.stats, model: epochs.epoch, way: stage.explorer.way, whole: isWhole };
+    return { ...stage.stats, ...this.beside?.stats, model: epochs.epoch, way: stage.explorer.way, whole: isWhole };
   }
 
   /** What is shown now, as an address tells it. */

@@ -30,6 +30,7 @@ function publish(ready: Promise<void>): void {
   const api = {
     ready,
     stats: (): unknown => browse?.stats ?? null,
+    walkers: (): unknown => browse?.beside?.walkers ?? [],
     project: (place_site_m: Vector3): readonly [number, number] | null => browse?.stage.pointOf(place_site_m) ?? null,
     pose: (): {
       readonly t_ns: null;

@@ -52,6 +52,7 @@ export class Stage implements World {
   private above: Layer | null = null;
   private share = 0;
   private asked = false;
+  private guestsMove = false;
   private resting: number | null = null;
   private moved_ms = Number.NEGATIVE_INFINITY;
   private drawn_ms: number | null = null;
@@ -85,9 +86,9 @@ export class Stage implements World {
     return { drawCalls: cost.calls, triangles: cost.triangles, framesDrawn: pictures, fineness: pace.fineness };
   }
 
-  /** Whether all that was asked for is drawn, as finely as it can be. */
+  /** Whether all that was asked for is drawn, as finely as it can be; what moves by itself never is. */
   get isSettled(): boolean {
-    return !this.asked && this.resting === null && !this.explorer.isFlying;
+    return (this.guestsMove || (!this.asked && this.resting === null)) && !this.explorer.isFlying;
   }
 
   get eye(): Eye {
@@ -228,11 +229,12 @@ export class Stage implements World {
   private draw(now_ms: number): void {
     this.asked = false;
     const before = this.camera.matrixWorld.clone();
-    let goesOn = this.explorer.turn(now_ms);
-    for (const turn of this.turns) goesOn = turn(now_ms) || goesOn;
+    const goesOn = this.explorer.turn(now_ms);
+    this.guestsMove = false;
+    for (const turn of this.turns) this.guestsMove = turn(now_ms) || this.guestsMove;
     if (!this.below) return;
     this.camera.updateMatrixWorld();
-    const isMoving = !this.camera.matrixWorld.equals(before) || this.above !== null;
+    const isMoving = !this.camera.matrixWorld.equals(before) || this.above !== null || this.guestsMove;
     if (isMoving) {
       if (this.drawn_ms !== null) this.pace.drawn(now_ms - this.drawn_ms, now_ms);
       this.moved_ms = now_ms;
@@ -242,7 +244,7 @@ export class Stage implements World {
     this.resize(rests ? 1 : this.pace.fineness);
     this.render();
     if (!rests) this.restLater();
-    if (goesOn) this.ask();
+    if (goesOn || this.guestsMove) this.ask();
   }
 
   private restLater(): void {
