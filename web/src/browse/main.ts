@@ -2,20 +2,32 @@
 
 import "../everyone";
 import { canDraw, element, publishNothing, tell } from "../dom";
+import { showFlat } from "../flat/flat";
 import type { Matrix4, Vector3 } from "../frames";
 import { languages, say } from "../language/speech";
-import { parseSite } from "../site";
+import { parseSite, type Site } from "../site";
 import { readAddress } from "./address";
 import { Browse } from "./browse";
 import { showWalks } from "./walks";
 
 let browse: Browse | null = null;
 
+/** Return the site, named on the page. */
+async function loadSite(): Promise<Site> {
+  const site = parseSite(await (await fetch("/api/site")).json(), languages(navigator.languages));
+  element("site", HTMLElement).textContent = site.name;
+  element("credit", HTMLElement).textContent = site.attribution;
+  return site;
+}
+
+/** Show the square as a plan, where it cannot be drawn. */
+async function showPlan(): Promise<void> {
+  showFlat(await loadSite(), document.querySelector(".everyone"));
+}
+
 async function show(): Promise<void> {
   try {
-    const site = parseSite(await (await fetch("/api/site")).json(), languages(navigator.languages));
-    element("site", HTMLElement).textContent = site.name;
-    element("credit", HTMLElement).textContent = site.attribution;
+    const site = await loadSite();
     const shown = readAddress(location.search, location.hash);
     browse = new Browse(site, shown);
     await browse.start(shown);
@@ -44,4 +56,4 @@ function publish(ready: Promise<void>): void {
 
 void showWalks();
 if (canDraw(element("notice", HTMLElement))) publish(show());
-else publishNothing();
+else publishNothing(showPlan());

@@ -44,6 +44,12 @@ export const en = {
   "sight.nothing": "Nothing of the square is in view.",
   "sight.unknown": "Nobody knows yet where you look.",
 
+  // the start page without WebGL
+  "flat.lead":
+    "This browser cannot draw in three dimensions (WebGL 2 is missing), so here is the square as a plan: choose a number on it, or a name in the list, to read about a building.",
+  "flat.plan": "Plan of the square, north up, numbered as the list",
+  "flat.scale": "North is up; the bar is {length} long.",
+
   // how well things are known
   "evidence.attested": "Attested: it stands, or was excavated.",
   "evidence.inferred": "Inferred: from its plan, its fragments, or buildings like it.",

@@ -40,6 +40,11 @@ export const tr: Catalogue = {
   "sight.nothing": "Buradan meydandan bir şey görünmüyor.",
   "sight.unknown": "Nereye baktığınız henüz bilinmiyor.",
 
+  "flat.lead":
+    "Bu tarayıcı üç boyutlu çizemiyor (WebGL 2 yok); bu yüzden meydanı plan olarak gösteriyoruz. Bir yapı hakkında okumak için plandan bir numara ya da listeden bir ad seçin.",
+  "flat.plan": "Meydanın planı, kuzey yukarıda, listedeki numaralarla",
+  "flat.scale": "Kuzey yukarıdadır; çizgi {length} uzunluğundadır.",
+
   "evidence.attested": "Belgelenmiş: hâlâ ayakta ya da kazıda bulundu.",
   "evidence.inferred": "Çıkarım: planından, parçalarından ya da benzer yapılardan anlaşılıyor.",
   "evidence.hypothetical": "Varsayım: olabileceği biçimlerden biri.",
