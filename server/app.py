@@ -53,12 +53,9 @@ def create_app(
     sessions: Sessions | None = None,
     store: LogStore | None = None,
     replays: Replays | None = None,
-<<<<<<< server/app.py
     site_folder: Path | None = None,
     review_memory_bytes: int = 4 * 10**9,
-=======
     relay: Relay | None = None,
->>>>>>> /tmp/w/E/theirs
 ) -> FastAPI:
     """Return the server's application; `app.state` has its `sessions`, its `access`, and its `visitors` for the door.
 
@@ -75,12 +72,9 @@ def create_app(
         sessions: The server's; None for fresh ones.
         store: Where uploaded walks are kept, in the place of `logs`.
         replays: Of the walks in the store.
-<<<<<<< server/app.py
         site_folder: The site's own, for what replays' pages show beside the pictures; None for none of that.
         review_memory_bytes: Of each process that reads a walk for that.
-=======
         relay: Joins `sessions` to those of other servers.
->>>>>>> /tmp/w/E/theirs
     """
     sessions = sessions or Sessions(monotonic_ns)
     # The interactive documentation loads its scripts from elsewhere, so there is none; /openapi.json stays.
