@@ -64,7 +64,7 @@ def shots(browser: Browser, url: str) -> Iterator[Shot]:
     context = browser.new_context(viewport={"width": width, "height": height}, locale="en-GB")
     page = ArPage(context.new_page())
     for model, views in VIEWS.items():
-        page.page.goto(f"{url}?model={model}")
+        page.page.goto(f"{url}?walkers=0&model={model}")
         page.ask("agora.ready")
         page.ask(ALONE)
         for view in views:

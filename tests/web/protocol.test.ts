@@ -61,8 +61,17 @@ test.each([
   ["hello", "emperor", "viewer"],
   ["state", undefined, null],
 ])("%s carries the session, and %s is %s", (type, told, role) => {
-  const message = parseState(JSON.stringify({ type, version: 1, role: told, sees: true, session: SESSION }));
-  expect(message).toEqual({ type: "session", session: parseSession(SESSION), role });
+  const number = type === "hello" ? 3 : null;
+  const message = parseState(JSON.stringify({ type, version: 1, role: told, sees: true, number, session: SESSION }));
+  expect(message).toEqual({ type: "session", session: parseSession(SESSION), role, number });
+});
+
+test("of those who watch the ones with a place are read", () => {
+  const eye = { place_site_m: [1, 2, 1.7], heading_rad: 0.5, pitch_rad: -0.1 };
+  const seen = [{ number: 2, eye }, { number: 3, eye: { ...eye, place_site_m: [1, null, 2] } }, { eye }];
+  const message = parseState(JSON.stringify({ type: "company", watching: 3, seen }));
+  expect(message).toEqual({ type: "company", watching: 3, seen: [{ number: 2, eye }] });
+  expect(() => parseState('{"type":"company","watching":1,"seen":[null]}')).toThrow(ProtocolError);
 });
 
 test("a reply tells what became of a request", () => {

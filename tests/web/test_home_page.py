@@ -23,7 +23,7 @@ BARE = "bare => document.body.classList.toggle('bare', bare)"
 def home(browser: Browser, showing: Showing) -> Iterator[ArPage]:
     """The start page, everything in."""
     with open_page(browser, locale="en-GB", permissions=["clipboard-read", "clipboard-write"]) as page:
-        page.page.goto(showing.url)
+        page.page.goto(f"{showing.url}?walkers=0")
         page.settle()
         yield page
         assert page.errors == []
@@ -112,7 +112,7 @@ def magenta(pixels: Pixels) -> float:
 
 def test_a_question_in_the_address_can_ask_for_view_and_tint(browser: Browser, showing: Showing) -> None:
     with open_page(browser) as page:
-        page.page.goto(f"{showing.url}?evidence=1&view=basilica")
+        page.page.goto(f"{showing.url}?walkers=0&evidence=1&view=basilica")
         page.settle()
         assert page.page.get_attribute("#evidence", "aria-pressed") == "true"
         assert place_of(page)[:2] == pytest.approx((-18.0, -16.0))
@@ -212,14 +212,14 @@ def test_a_site_without_today_or_ground_offers_neither(home: ArPage) -> None:
 
 def test_a_model_that_does_not_come_is_said_in_a_sentence(browser: Browser, showing: Showing) -> None:
     with open_page(browser) as page:
-        page.page.goto(f"{showing.url}?model=today")
+        page.page.goto(f"{showing.url}?walkers=0&model=today")
         page.until("document.querySelector('#notice').textContent.startsWith('The model of the square could not')")
 
 
 def test_a_finer_level_that_does_not_come_leaves_the_coarse_one(browser: Browser, showing: Showing) -> None:
     with open_page(browser) as page:
         page.page.route("**/models/roman.0.glb*", lambda route: route.fulfill(status=404))
-        page.page.goto(showing.url)
+        page.page.goto(f"{showing.url}?walkers=0")
         page.settle()
         assert page.ask("agora.stats().triangles") > 500
         assert not page.page.is_visible("#notice")
