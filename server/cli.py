@@ -4,16 +4,12 @@ import json
 import logging
 import sys
 import webbrowser
-from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal, NoReturn
 
 import typer
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
 from assets.errors import AssetError
 from assets.site import Site, load_site
@@ -35,7 +31,9 @@ from server.options import (
     site_with,
     stop_asked,
 )
+from server.progress import progress_bar
 from server.serve_command import serve
+from server.simulate_command import simulate
 from server.token_command import token
 from tracker.errors import InputError
 from tracker.estimators import check_name
@@ -56,6 +54,7 @@ app.command()(live_commands.record)
 app.command()(serve)
 app.command()(token)
 app.command()(doctor)
+app.command()(simulate)
 app.add_typer(calibrate, name="calibrate")
 out = Console(highlight=False)
 err = Console(stderr=True, highlight=False)
@@ -166,7 +165,7 @@ def evaluate(
     settings, place = choose(change or ()), site_with(site, eyes)
     traces: list[Trace] = []
     cv2.setNumThreads(1)  # a rig has other work for its cores, and figures should not depend on how many there are
-    with _progress("evaluating") as bar:
+    with progress_bar("evaluating") as bar:
         task = bar.add_task("", total=1.0)
         evaluation = evaluate_logs(
             logs,
@@ -190,64 +189,6 @@ def evaluate(
 
 
 @app.command()
-def simulate(
-    log: Annotated[Path, typer.Argument(help="The log to write.", metavar="OUT")],
-    seed: Annotated[int, typer.Option(min=0, help="Another seed, another walk.")] = 1,
-    duration: Annotated[float | None, typer.Option(min=1.0, help="Seconds; 75, or the walk's own.")] = None,
-    camera: Annotated[
-        bool, typer.Option("--camera", help="Render what the camera sees (about 4 pictures a second).")
-    ] = False,
-    dataset: Annotated[int, typer.Option(min=0, max=5, help="In the manner of the paper's dataset 1 to 5.")] = 0,
-    plan: Annotated[
-        Literal["chance", "demo"],
-        typer.Option(
-            "--walk",
-            help="`demo` is the demo's: past temple, Prytaneion, Basilica and Odeon, with stops and landmarks tapped.",
-        ),
-    ] = "chance",
-    video: Annotated[Literal["h264", "jpeg"], typer.Option(help="How pictures are stored.")] = "h264",
-    site: SiteFolder = SITE,
-) -> None:
-    """Simulate a visitor's walk across the site: IMU, magnetometer, GPS, camera and full truth, the same for the same seed."""
-    from assets.terrain import build_terrain
-    from assets.today import build_today
-    from server.pointing import DEMO_POINTINGS, pointed_out
-    from server.simulation import write_walk
-    from server.site_tour import tour_of
-    from server.standing import origin_of
-    from tracker.choreography import DATASET_DURATION_S
-    from tracker.simulate import DEMO_WALK, WalkSettings
-
-    place = load_site(site)
-    if plan == "demo" and dataset:
-        raise typer.BadParameter("a walk is the demo's or in the manner of a dataset, not both", param_hint="--walk")
-    base = (
-        DEMO_WALK if plan == "demo" else WalkSettings(dataset=dataset, duration_s=DATASET_DURATION_S.get(dataset, 75.0))
-    )
-    settings = replace(
-        base,
-        seed=seed,
-        duration_s=duration or base.duration_s,
-        tour=tour_of(place),
-        origin=origin_of(place),
-        eye_height_m=place.eye_height_m,
-    )
-    with _progress("simulating") as bar:
-        task = bar.add_task("rendering" if camera else "writing", total=1.0)
-        scene = build_today(place, lambda _: None) if camera else None
-        size = write_walk(
-            log,
-            settings,
-            ground_z_m=build_terrain(place).ground_z_m,
-            scene=scene,
-            video=video,
-            progress=lambda done: bar.update(task, completed=done),
-            pointed=lambda walk: pointed_out(walk, DEMO_POINTINGS if plan == "demo" else (), place.landmarks),
-        )
-    out.print(f"{log}: {settings.duration_s:.0f} s, {size / 1e6:.1f} MB")
-
-
-@app.command()
 def build(
     site: Annotated[Path, typer.Argument(help="The folder of the site.", show_default="the State Agora")] = SITE,
     report: Annotated[bool, typer.Option("--report", help="Print sizes and counts as JSON.")] = False,
@@ -256,7 +197,7 @@ def build(
     from assets.build import build as build_models
 
     place = load_site(site)
-    with _progress("building") as bar:
+    with progress_bar("building") as bar:
         task = bar.add_task(place.name["en"], total=1.0)
         built = build_models(place, place.folder / "built", lambda done: bar.update(task, completed=done))
     if report:
@@ -294,19 +235,6 @@ def settings() -> None:
         out.print(f"[bold]{setting.key}[/bold] = [cyan]{escape(setting.text)}[/cyan]")
         out.print(Padding(setting.meaning, (0, 0, 1, 4)), markup=False)
     out.print("The end of a name is enough: agora evaluate LOG --set m_P=literal_enu", style="dim")
-
-
-@contextmanager
-def _progress(what: str) -> Iterator[Progress]:
-    columns = (
-        TextColumn(what),
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TaskProgressColumn(),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=err, transient=True) as bar:
-        yield bar
 
 
 def main() -> NoReturn:
