@@ -18,6 +18,8 @@ def status_of(walk: Walk) -> str:
         return "*Connecting ...*"
     kind = "Replay" if walk.is_replay else "Live walk"
     lines = [f"**{plain(walk.title)}** · {kind}, {plain(session['estimator'] or 'no estimator')}"]
+    if walk.watching > 1:
+        lines.append("One viewer" if walk.watching == 2 else f"{walk.watching - 1} viewers")
     if session["notice"]:
         lines.append(f"⚠ {plain(session['notice'])}")
     lines += _pose(walk.frame)

@@ -10,14 +10,21 @@ import numpy as np
 from server.console.history import History
 from server.console.path import ColouredPath
 from server.errors import MalformedMessage
-from server.messages import ControlReply, Figures, Hello, SessionNews
+from server.messages import Company, ControlReply, Figures, Hello, SessionNews
 from server.wire import FrameMeta, decode_frame, is_frame
 
 #: An hour at ten pictures a second.
 _PLACES: Final = 36_000
-_FROM_SERVER: "msgspec.json.Decoder[Hello | SessionNews | ControlReply | Figures]" = msgspec.json.Decoder(
-    Hello | SessionNews | ControlReply | Figures
-)
+_FromServer = Hello | SessionNews | ControlReply | Figures | Company
+_DECODER: "msgspec.json.Decoder[_FromServer]" = msgspec.json.Decoder(_FromServer)
+
+
+class _Kind(msgspec.Struct):
+    type: str
+
+
+_KIND: "msgspec.json.Decoder[_Kind]" = msgspec.json.Decoder(_Kind)
+_KNOWN: Final = frozenset(kind.__struct_config__.tag for kind in (Hello, SessionNews, ControlReply, Figures, Company))
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +44,8 @@ class Walk:
         self.name = name
         self.session: dict[str, Any] = {}
         """As `messages.Session` has it; empty before the first message."""
+        self.watching = 0
+        """Viewers, the console among them."""
         self.sees = False
         """Whether this viewer gets pictures that the walker does not share."""
         self.frame: FrameMeta | None = None
@@ -65,19 +74,24 @@ class Walk:
         return self.frame is not None and (self.sees or bool(self.session.get("sharing")))
 
     def take_text(self, text: str) -> ControlReply | None:
-        """Take a text message; return it where it is a reply.
+        """Take a text message; return it where it is a reply. Kinds that are not known are passed over.
 
         Raises:
             MalformedMessage: It is not of this version.
         """
         try:
-            message = _FROM_SERVER.decode(text)
+            if _KIND.decode(text).type not in _KNOWN:
+                return None
+            message = _DECODER.decode(text)
         except msgspec.MsgspecError as exc:
             raise MalformedMessage(f"no message to a viewer: {exc}") from exc
         if isinstance(message, ControlReply):
             return message
         if isinstance(message, Figures):
             self.history.take_figures(message)
+            return None
+        if isinstance(message, Company):
+            self.watching = message.watching
             return None
         if isinstance(message, Hello):
             self.sees = message.sees

@@ -32,7 +32,7 @@ class Telling:
     @property
     def times_s(self) -> list[list[float]]:
         """Of the updates of each message."""
-        return [[update["t_s"] for update in message["updates"]] for message in self.sent]
+        return [[round(update["t_s"], 6) for update in message["updates"]] for message in self.sent]
 
 
 def test_nothing_is_told_before_somebody_asks_and_then_all_of_it() -> None:

@@ -11,11 +11,12 @@ import pytest
 from websockets.sync.connection import Connection
 
 from server.access import Access
+from server.messages import ControlReply, Figures, encode
 from server.privacy import without_picture
 from server.push import RigLink
 from server.web_server import WebServer
 from server.wire import decode_frame, encode_frame
-from tests.server.serving import bytes_of, rig, serving, text_of, token, until, viewer
+from tests.server.serving import HELD_S, bytes_of, rig, serving, text_of, token, until, viewer
 from tests.server.wire_examples import TINY_JPEG, example_frame
 
 
@@ -115,3 +116,20 @@ def test_sharing_ends_when_the_rig_leaves_or_another_takes_the_session(server: W
             with watch(server, "viewer") as late:
                 assert text_of(late, "hello")["session"]["sharing"] is False
                 assert bytes_of(late) == without_picture(frame(1))
+
+
+@pytest.mark.parametrize(("role", "ok"), [("viewer", False), ("rig", False), ("operator", True), ("admin", True)])
+@pytest.mark.parametrize(("action", "value"), [("settings", "precise.lag_s=1.0"), ("figures", None)])
+def test_only_operators_look_into_the_tracker(server: WebServer, role: Any, ok: bool, action: str, value: Any) -> None:
+    with RigLink(
+        server.rig_url("walk"), token("rig", "walk"), lambda asked: ControlReply(asked.request_id, True)
+    ) as link:
+        until(lambda: link.connected)
+        with watch(server, role, "walk" if role == "rig" else None) as asking:
+            assert ask(asking, action, value)["ok"] is ok
+            link.send_text(encode(Figures(anew=True, updates=[], rejected={})))
+            link.send_state({"notice": "after"})
+            told: list[dict[str, Any]] = [{"type": "nothing"}]
+            while told[-1]["type"] != "state" or told[-1]["session"]["notice"] != "after":
+                told.append(json.loads(asking.recv(HELD_S)))
+            assert any(message["type"] == "figures" for message in told) is (ok and action == "figures")

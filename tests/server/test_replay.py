@@ -20,7 +20,7 @@ from server.cli import SITE
 from server.replay import Replay, ReplaySettings
 from server.sessions import session_name
 from server.showing import Showing
-from server.wire import FrameMeta, decode_frame, is_frame
+from server.wire import MOTION_MODELS, FrameMeta, decode_frame, is_frame
 from tests.server.serving import HELD_S, until, viewer
 from tests.walks import write_walk
 from tracker.errors import MissingSensor, UnknownEstimator
@@ -55,6 +55,7 @@ class Watcher:
         self._unseen: deque[FrameMeta] = deque()
         self.session: dict[str, Any] = {}
         self._replies: dict[str, dict[str, Any]] = {}
+        self.figures: list[dict[str, Any]] = []
 
     def frames(self, count: int = 10_000) -> Iterator[FrameMeta]:
         """Yield the next frames, those first that came while a reply was waited for."""
@@ -88,7 +89,9 @@ class Watcher:
         heard = json.loads(message)
         if heard["type"] == "reply":
             self._replies[heard["request_id"]] = heard
-        else:
+        elif heard["type"] == "figures":
+            self.figures.append(heard)
+        elif heard["type"] != "company":
             self.session = heard["session"]
 
 
@@ -149,9 +152,41 @@ def test_a_viewer_pauses_seeks_and_changes_the_estimator(wall: Path, tmp_path: P
         assert watcher.session["playback"]["speed"] == 4.0
 
 
+def test_an_operator_changes_a_setting_and_takes_it_back(wall: Path, tmp_path: Path) -> None:
+    with watching(wall, ReplaySettings(estimator="gps-imu/precise"), tmp_path) as watcher:
+        watcher.ask("pause")
+        watcher.ask("seek", 6.0)
+        usual = watcher.frame_where(lambda meta: meta.pose_valid)
+        assert watcher.ask("settings", "precise.gps_floor_m=25.0")["ok"]
+        other = watcher.frame_where(lambda meta: meta.pose_valid)
+        assert "precise.gps_floor_m=25.0" in watcher.session["notice"]
+        assert other.frame_id == usual.frame_id
+        assert np.trace(other.cov[:2, :2]) > 4.0 * np.trace(usual.cov[:2, :2])
+        assert watcher.ask("settings", "")["ok"]
+        again = watcher.frame_where(lambda meta: meta.pose_valid)
+        assert watcher.session["notice"] is None
+        np.testing.assert_array_equal(again.T_site_cam, usual.T_site_cam)
+
+
+def test_an_operator_sees_the_filter_at_work(wall: Path, tmp_path: Path) -> None:
+    with watching(wall, ReplaySettings(estimator="gps-imu/famm", looping=True), tmp_path) as watcher:
+        assert watcher.ask("figures")["ok"]
+        while not any(told["updates"] for told in watcher.figures):
+            next(watcher.frames())
+        assert watcher.figures[0]["anew"]
+        update = next(told for told in watcher.figures if told["updates"])["updates"][0]
+        assert 0.0 <= update["t_s"] < 10.0
+        assert update["motion_model"] in MOTION_MODELS
+        assert update["position_m"] < 30.0
+
+
 @pytest.mark.parametrize(
     ("action", "value", "word"),
     [
+        ("settings", "nonsense=1", "no setting"),
+        ("settings", "gps_floor_m", "no value"),
+        ("settings", "gps_floor_m=-1", "gps_floor_m"),
+        ("settings", 7.0, "KEY=VALUE"),
         ("estimator", "nonsense", "gps-imu/famm"),
         ("estimator", "camera-gps-imu/famm", "no camera"),
         ("seek", -1.0, "position"),

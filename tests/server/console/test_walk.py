@@ -10,7 +10,7 @@ from server.console.saving import table
 from server.console.status import plain, rejected_of, status_of
 from server.console.walk import Walk
 from server.errors import MalformedMessage
-from server.messages import ControlReply, Figures, Update, encode
+from server.messages import Company, ControlReply, Figures, Update, encode
 from server.sessions import Session
 from server.wire import FrameMeta, encode_frame
 from tests.server.wire_examples import TINY_JPEG, example_frame
@@ -96,6 +96,13 @@ def test_a_picture_is_shown_to_those_who_may_see_it_or_while_it_is_shared() -> N
     assert not hidden.has_picture
     hidden.take_text(messages.state(session(sharing=True)))
     assert hidden.has_picture
+
+
+def test_company_is_counted_and_what_a_newer_server_says_is_passed_over() -> None:
+    walk = told()
+    walk.take_text(encode(Company(watching=4, seen=[])))
+    assert walk.take_text('{"type":"weather","sun":true}') is None
+    assert "3 viewers" in status_of(walk)
 
 
 def test_replies_are_handed_on_and_poses_passed_over() -> None:
