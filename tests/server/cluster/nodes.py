@@ -9,6 +9,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from time import monotonic, sleep
 
+from tests.server.cluster.certificates import Certificates
+
 _PROGRAM = Path(sys.executable).with_name("nats-server")
 _START_S = 20.0
 
@@ -26,14 +28,22 @@ class Node:
 
 
 @contextmanager
-def nodes(folder: Path, how_many: int = 1, settings: str = "") -> Iterator[list[Node]]:
-    """Run so many, a cluster where they are several, each that answers; `settings` goes into each one's configuration."""
+def nodes(
+    folder: Path, how_many: int = 1, *, secured: Certificates | None = None, password: str = ""
+) -> Iterator[list[Node]]:
+    """Run so many, a cluster where they are several, each that answers.
+
+    Where they are secured they speak TLS alone, know each other by certificates, and let in the user `agora` by its password.
+    """
     clients, routes = free_ports(how_many), free_ports(how_many)
     running: list[Node] = []
     try:
         for i in range(how_many):
             path = folder / f"nats-{i}.conf"
-            path.write_text(_configuration(folder, i, clients, routes) + settings)
+            tls = "" if secured is None else _tls(secured)
+            path.write_text(_configuration(folder, i, clients, routes, tls))
+            if secured is not None:
+                path.write_text(path.read_text() + _door(secured, password))
             with (folder / f"nats-{i}.log").open("wb") as log:
                 process = subprocess.Popen([str(_PROGRAM), "-c", str(path)], stdout=log, stderr=log)
             running.append(Node(f"n{i}", clients[i], process))
@@ -54,14 +64,29 @@ def free_ports(how_many: int) -> list[int]:
     return ports
 
 
-def _configuration(folder: Path, i: int, clients: list[int], routes: list[int]) -> str:
+def _tls(secured: Certificates) -> str:
+    """Return the lines by which nodes know each other."""
+    files = {"cert_file": secured.certificate, "key_file": secured.key, "ca_file": secured.ca}
+    return "tls { " + ", ".join(f"{name}: {json.dumps(str(path))}" for name, path in files.items()) + ", verify: true }"
+
+
+def _door(secured: Certificates, password: str) -> str:
+    """Return the lines by which clients come in."""
+    files = {"cert_file": secured.certificate, "key_file": secured.key}
+    tls = ", ".join(f"{name}: {json.dumps(str(path))}" for name, path in files.items())
+    return (
+        f"tls {{ {tls}, handshake_first: true }}\nauthorization {{ user: agora, password: {json.dumps(password)} }}\n"
+    )
+
+
+def _configuration(folder: Path, i: int, clients: list[int], routes: list[int], tls: str) -> str:
     lines = [
         f'server_name: n{i}\nlisten: "127.0.0.1:{clients[i]}"\nmax_payload: 8MB',
         f"jetstream {{ store_dir: {json.dumps(str(folder / f'store-{i}'))} }}",
     ]
     if len(clients) > 1:
         others = ", ".join(f'"nats://127.0.0.1:{port}"' for j, port in enumerate(routes) if j != i)
-        lines.append(f'cluster {{ name: agora, listen: "127.0.0.1:{routes[i]}", routes: [{others}] }}')
+        lines.append(f'cluster {{ name: agora, listen: "127.0.0.1:{routes[i]}", routes: [{others}], {tls} }}')
     return "\n".join(lines) + "\n"
 
 
