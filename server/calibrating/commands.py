@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
 
 from server.calibrating.feed import Feed, LiveFeed, recorded_feed
-from server.calibrating.feed import Progress as Told
+from server.calibrating.feed import Progress
 from server.options import Browser, Port
+from server.progress import progress_bar
 from tracker.calibrate.board import DICTIONARIES, Board
 from tracker.errors import InputError
 from tracker.rig_file import DEFAULT_PLACE, RigFile, read_rig_file
@@ -231,10 +231,9 @@ def _feed(
 
 
 @contextmanager
-def _told() -> Iterator[Told]:
+def _told() -> Iterator[Progress]:
     """Show a progress bar while inside."""
-    columns = (TextColumn("calibrating"), TextColumn("{task.description}"), BarColumn(), TaskProgressColumn())
-    with Progress(*columns, console=err, transient=True) as bar:
+    with progress_bar("calibrating") as bar:
         task = bar.add_task("", total=1.0)
         yield lambda what, share: bar.update(task, description=what, completed=share)
 
