@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 from rich.console import Console
 
-from server.calibrating.feed import Feed, LiveFeed, recorded_feed
-from server.calibrating.feed import Progress
+from server.calibrating.feed import Feed, LiveFeed, Progress, recorded_feed
 from server.options import Browser, Port
 from server.progress import progress_bar
 from tracker.calibrate.board import DICTIONARIES, Board
