@@ -41,10 +41,8 @@ class Presenter:
         except MalformedInput:
             return  # a picture that does not decode is left out, as vision leaves it out
         self._link.send_frame(message)
-        if pose is not None:
-            self.show_pose(pose, estimator)
 
-    def show_pose(self, pose: Pose, estimator: str) -> None:
-        """Send a pose for those who show no picture."""
+    def show_pose(self, pose: Pose, estimator: str, *, did_seek: bool = False) -> None:
+        """Send a pose for those who show no picture: later than what was sent before, or after a seek."""
         self._sequence += 1
-        self._link.send_pose(pose_message(pose, seq=self._sequence, estimator=estimator))
+        self._link.send_pose(pose_message(pose, seq=self._sequence, estimator=estimator, did_seek=did_seek))

@@ -102,7 +102,7 @@ def frame_message(
     return encode_frame(meta, frame.picture.jpeg())
 
 
-def pose_message(pose: Pose, *, seq: int, estimator: str) -> bytes:
+def pose_message(pose: Pose, *, seq: int, estimator: str, did_seek: bool = False) -> bytes:
     """Return the pose message of the newest estimate; `ValueError` for a number that the wire cannot carry."""
     a, b, c, d, e, f = pose.cov.diagonal().tolist()
     update = PoseUpdate(
@@ -115,6 +115,7 @@ def pose_message(pose: Pose, *, seq: int, estimator: str) -> bytes:
         motion_model=pose.motion_model,
         heading_known=pose.heading_known,
         is_truth=estimator == _TRUTH,
+        did_seek=did_seek,
     )
     return encode_pose(update)
 

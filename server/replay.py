@@ -168,6 +168,8 @@ class Replay:
             pose = self._placing.placed(shown.pose, state.estimator)
             self._aligner.note(shown.frame, pose)
             self._presenter.show(shown, pose, estimator=state.estimator, position_s=state.position_s, did_seek=did_seek)
+            if pose is not None:
+                self._presenter.show_pose(pose, state.estimator, did_seek=did_seek)
         pipeline = self._playback.pipeline
         self._figures.look(pipeline.innovations(), pipeline.rejected)
 

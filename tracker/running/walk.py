@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
 from threading import Event, Thread
-from time import monotonic_ns
+from time import monotonic, monotonic_ns
 from types import MappingProxyType
 
 from tracker.blank import blank_picture
@@ -36,8 +36,8 @@ _PERIOD_S = 0.01
 _HEALTH_NS = 200_000_000
 #: A walk without a camera is shown over an empty picture, so often.
 _BLANK_NS = 100_000_000
-#: Between pictures the newest pose is shown this often.
-_POSE_S = 0.05
+#: The newest pose is shown this often, whatever pictures come: who watches from beside sees thirty steps a second.
+_POSE_S = 1.0 / 30.0
 #: The camera repeats itself when so many pictures, for so long, are the same to the last byte.
 _SAMES, _SAME_NS = 10, 2_000_000_000
 #: A source has so long to close its device before it is left behind.
@@ -91,7 +91,7 @@ class LiveWalk:
             core: Used by the fusion thread alone from now on.
             sources: One for each of the core's sensors.
             show: Takes each picture with the pose of its capture, on a thread of its own; the newest wins where it is slow.
-            show_pose: Takes the newest pose, or None, where no picture comes for 50 ms, on the same thread.
+            show_pose: Takes the newest pose, or None, thirty times a second, on the same thread.
             recorder: Is given what the core records by whoever made the core; closed here, last.
         """
         self._core, self._show, self._show_pose, self._recorder = core, show, show_pose, recorder
@@ -250,12 +250,14 @@ class LiveWalk:
     # -- showing ------------------------------------------------------------------------------------------------------
 
     def _show_all(self) -> None:
+        due_s = monotonic()
         while not self._shown.closed:
-            shown = self._shown.take(_POSE_S)
+            shown = self._shown.take(max(0.0, due_s - monotonic()))
             try:
                 if shown is not None:
                     self._show(shown)
-                else:
+                if monotonic() >= due_s:
+                    due_s = monotonic() + _POSE_S
                     self._show_pose(self.pose)
             except Exception:
                 _logger.exception("a picture could not be shown")
