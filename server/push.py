@@ -33,7 +33,7 @@ from tracker.rig import Rig
 _logger = logging.getLogger(__name__)
 
 _FIRST_PAUSE_S: Final = 0.1
-_LONGEST_PAUSE_S: Final = 2.0
+_LONGEST_PAUSE_S: Final = 1.0
 #: A connection that has lasted so long was a good one.
 _GOOD_S: Final = 5.0
 #: A network that has vanished without a word is noticed when nothing could be sent for so long, and the server is looked for anew.

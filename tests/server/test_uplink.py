@@ -11,7 +11,9 @@ from pathlib import Path
 from time import monotonic, monotonic_ns, sleep
 
 import httpx
+import numpy as np
 import pytest
+from websockets.exceptions import WebSocketException
 from websockets.sync.client import connect
 
 from server import push
@@ -21,6 +23,7 @@ from server.wire import decode_frame, is_frame
 from tests.server.serving import serving, token, until
 from tests.walks import write_walk
 from tracker.log import Log
+from tracker.measurements import ImuSample
 from tracker.simulate import AGORA_ORIGIN
 from tracker.sources.played import Played
 
@@ -58,16 +61,16 @@ def log(tmp_path_factory: pytest.TempPathFactory) -> Log:
     return Log.open(write_walk(tmp_path_factory.mktemp("logs") / "wall.mcap", 20.0, pictures=True))
 
 
-def live_rig(log: Log) -> LiveRig:
+def live_rig(log: Log, record: Path | None = None) -> LiveRig:
     played = Played(log, looping=True)
     placing = Placing(AGORA_ORIGIN, lambda e, n: 0.0, lambda e, n: 1.65, 1.65)
-    return LiveRig([played.source(name) for name in ("gps", "imu", "camera")], log.rig, placing)
+    return LiveRig([played.source(name) for name in ("gps", "imu", "camera")], log.rig, placing, record=record)
 
 
 def test_the_rig_tracks_on_while_its_server_is_killed_and_sends_the_newest_first(log: Log, tmp_path: Path) -> None:
     """Whole state and newest picture come at once with the new server; none of those taken meanwhile.
 
-    However long it was away: attempts are two seconds apart at most, and one picture, one pose and the state are all that is kept.
+    However long it was away: attempts are a second apart at most, and one picture, one pose and the state are all that is kept.
     """
     rig = live_rig(log)
     with server_process(tmp_path) as (_, port):
@@ -96,6 +99,67 @@ def test_the_rig_tracks_on_while_its_server_is_killed_and_sends_the_newest_first
         assert metas[0].t_capture_ns > t_back_ns - 1_000_000_000, "nothing old was kept for it"
         assert all(meta.pose_valid for meta in metas)
         rig.close()
+
+
+class Watcher(threading.Thread):
+    """Watches as a page does: comes back for as long as it takes (`web/src/socket.ts`)."""
+
+    def __init__(self, port: int) -> None:
+        super().__init__(daemon=True)
+        self.connections = 0
+        """Those that brought pictures."""
+        self._port, self.stop = port, threading.Event()
+
+    def run(self) -> None:
+        """Watch until it is told to stop."""
+        while not self.stop.is_set():
+            with suppress(OSError, WebSocketException):
+                self._watch()
+            self.stop.wait(0.3)
+
+    def _watch(self) -> None:
+        with connect(f"ws://127.0.0.1:{self._port}/ws/view/walk", compression=None, proxy=None) as connection:
+            seen = False
+            while not self.stop.is_set():
+                with suppress(TimeoutError):
+                    message = connection.recv(0.1)
+                    if isinstance(message, bytes) and is_frame(message):
+                        self.connections += not seen
+                        seen = True
+                        frame_id = decode_frame(message)[0].frame_id
+                        connection.send(f'{{"type": "ack", "frame_id": {frame_id}}}')
+
+
+def test_a_server_killed_in_a_walk_costs_no_sample_of_the_recording_and_rig_and_viewers_come_back(
+    log: Log, tmp_path: Path
+) -> None:
+    """How long that takes is measured by `tests/benchmarks/failover.py`."""
+    path = tmp_path / "walk.mcap"
+    rig = live_rig(log, path)
+    watcher = None
+    try:
+        with server_process(tmp_path) as (_, port):
+            rig.start(f"ws://127.0.0.1:{port}/ws/rig/walk", token("rig", "walk"))
+            watcher = Watcher(port)
+            watcher.start()
+            until(lambda: watcher.connections == 1)
+        until(lambda: rig.link is not None and not rig.link.connected)
+        with server_process(tmp_path, port):
+            until(lambda: watcher.connections == 2)
+            state = rig.state
+            assert state.recorder is not None
+            assert state.recorder.lost == 0
+    finally:
+        if watcher is not None:
+            watcher.stop.set()
+            watcher.join()
+        rig.close()
+    played = [sample.t_ns for sample in log.messages() if isinstance(sample, ImuSample)]
+    recorded = [sample.t_ns for sample in Log.open(path).messages() if isinstance(sample, ImuSample)]
+    assert len(recorded) > 200
+    steps = np.diff(recorded)
+    assert steps.min() > 0
+    assert steps.max() <= np.diff(played).max() + 60_000_000, "not even where the walk begins anew"
 
 
 class Tunnel:

@@ -10,7 +10,7 @@ export interface Listener {
 }
 
 const FIRST_WAIT_MS = 300;
-const LONGEST_WAIT_MS = 5000;
+const LONGEST_WAIT_MS = 1500;
 const MEANINGS: Readonly<Record<number, Connection>> = {
   [FORBIDDEN]: "refused",
   [NO_SESSION]: "no session",
