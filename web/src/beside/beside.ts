@@ -53,6 +53,7 @@ export class Beside {
       estimator: mine?.walk.session.estimator ?? null,
       walkers: [...this.guests.values()].filter(({ shown }) => shown !== null).length,
       watching: mine?.walk.watching ?? null,
+      seen: mine?.walk.others.length ?? 0,
     };
   }
 
