@@ -250,7 +250,6 @@ class Page {
     }
     if (this.frame)
       this.hmd?.turn(this.locked?.headingKnown ? this.locked.T_site_cam : null, fieldOf(this.frame.lens), now_ms);
-    this.narrator.turn(now_ms);
     const playing = this.session?.playback?.playing ?? true;
     this.hud.show(this.frame, playing, now_ms);
     this.hud.advise({

@@ -8,6 +8,7 @@ import type { Monument } from "./site";
 
 /** Who has moved and turned less than this for so long stands still. */
 const STILL_MS = 1500;
+const LOOK_EVERY_MS = 300;
 const STILL_M = 0.5;
 const STILL_RAD = 0.1;
 /** A description that was asked for stays for so long, and then until somebody moves. */
@@ -29,6 +30,7 @@ export class Narrator {
       const isTyped = target instanceof HTMLSelectElement || target instanceof HTMLTextAreaElement;
       if (key === KEY && !ctrlKey && !metaKey && !altKey && !isTyped) this.speak();
     });
+    window.setInterval(() => this.turn(performance.now()), LOOK_EVERY_MS);
   }
 
   /** Take what stands on the site. */
@@ -45,7 +47,7 @@ export class Narrator {
   }
 
   /** Take note of the time: whoever stands still is told, once, by a screen reader. */
-  turn(now_ms: number): void {
+  private turn(now_ms: number): void {
     const from = this.standpoint();
     if (from === null) this.since = null;
     else if (this.since === null || isElsewhere(this.since.from, from)) {

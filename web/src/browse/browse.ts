@@ -6,6 +6,7 @@ import { element, tell } from "../dom";
 import type { Vector3 } from "../frames";
 import { say } from "../language/speech";
 import { fillLegend } from "../legend";
+import { Narrator } from "../narrator";
 import { contains, type Place } from "../plan";
 import type { Monument, Site, View } from "../site";
 import { loadGround } from "../walkable";
@@ -86,6 +87,7 @@ export class Browse {
     });
     const isAlone = new URLSearchParams(location.search).get("walkers") === "0";
     this.beside = isAlone ? null : new Beside(this.stage, site.eye_height_m);
+    new Narrator(() => this.stage.standpoint).learn(site.monuments);
     fillLegend(element("legend", HTMLElement), site);
     fillKeys(element("keys", HTMLElement));
     this.listen();

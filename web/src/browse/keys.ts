@@ -10,6 +10,7 @@ const KEYS: readonly (readonly [readonly string[], Key])[] = [
   [["1", "2", "3"], "help.ways"],
   [["T"], "help.times"],
   [["M"], "help.tape"],
+  [["V"], "describe.long"],
 ];
 
 /** Fill a list of terms with the keys. */

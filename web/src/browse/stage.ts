@@ -10,6 +10,7 @@ import {
   Vector2,
   WebGLRenderer,
 } from "three";
+import type { Standpoint } from "../describe";
 import { T_gltf_site, type Vector3 } from "../frames";
 import type { Square } from "../model";
 import { Sky } from "../sky";
@@ -93,6 +94,14 @@ export class Stage implements World {
 
   get eye(): Eye {
     return this.explorer.eye;
+  }
+
+  /** Where the eye is and how much it sees from side to side. */
+  get standpoint(): Standpoint {
+    const { place_site_m, heading_rad } = this.eye;
+    const [e_m, n_m, u_m] = place_site_m;
+    const half_rad = Math.atan(Math.tan((this.camera.fov * Math.PI) / 360) * this.camera.aspect);
+    return { e_m, n_m, u_m, heading_rad, half_rad };
   }
 
   /** Draw this square, and over it, by that share, another one: from one time to the other. */

@@ -27,6 +27,7 @@ export const en = {
 
   // the view in words
   "describe.button": "Describe",
+  "describe.long": "Describe the view",
   "describe.title": "Say in words what is seen (v)",
   "facing.n": "You face north.",
   "facing.ne": "You face north-east.",

@@ -23,6 +23,7 @@ export const tr: Catalogue = {
   "compass.nw": "kuzeybatı",
 
   "describe.button": "Anlat",
+  "describe.long": "Görünümü anlat",
   "describe.title": "Görüneni sözle anlat (v)",
   "facing.n": "Kuzeye bakıyorsunuz.",
   "facing.ne": "Kuzeydoğuya bakıyorsunuz.",
