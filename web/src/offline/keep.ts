@@ -5,7 +5,7 @@ const PATIENCE_MS = 15_000;
 
 /** Keep everything for a visit without network, after `ready`; returns whether it is. */
 export async function keepForLater(ready: () => Promise<unknown>): Promise<boolean> {
-  if (!import.meta.env.PROD || !("serviceWorker" in navigator)) return false;
+  if (!import.meta.env.PROD || location.protocol === "file:" || !("serviceWorker" in navigator)) return false;
   await Promise.race([ready(), new Promise((resolve) => window.setTimeout(resolve, PATIENCE_MS))]);
   await navigator.serviceWorker.register("/worker.js");
   const { active } = await navigator.serviceWorker.ready;

@@ -36,7 +36,7 @@ export class Charts {
     this.chosen = chosen;
     for (const { plot } of this.drawn) plot.destroy();
     this.width = this.root.clientWidth;
-    this.root.replaceChildren();
+    this.root.replaceChildren(...(chosen.length === 0 ? [note(say("replay.curves.none"))] : []));
     this.drawn = this.width === 0 ? [] : CURVES.flatMap((name) => this.chart(name) ?? []);
     this.at(this.position_s);
   }
@@ -111,6 +111,13 @@ export class Charts {
     for (const { plot } of this.drawn) plot.setSize({ width, height: HEIGHT_PX });
     this.at(this.position_s);
   }
+}
+
+function note(words: string): HTMLElement {
+  const paragraph = document.createElement("p");
+  paragraph.className = "quiet";
+  paragraph.textContent = words;
+  return paragraph;
 }
 
 /** Say what the curves are under the pointer. */

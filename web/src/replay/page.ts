@@ -30,6 +30,7 @@ export class ReplayPage {
   private readonly notice = element("notice", HTMLElement);
   private readonly toast = element("toast", HTMLElement);
   private timeline: Timeline | null = null;
+  private isLearned = false;
   private connection: Connection = "connecting";
   private toastTimer: number | undefined;
   /** Where the picture is that is shown now, or that was asked for since. */
@@ -101,12 +102,17 @@ export class ReplayPage {
     } catch (error) {
       console.warn("the timeline stays bare", error);
     }
+    this.isLearned = true;
+    if (this.session) this.rivals.begin();
   }
 
   private take(session: Session): void {
-    this.session = session;
     this.transport.show(session);
+    const isFirst = this.session === null;
+    this.session = session;
     this.rivals.show(session);
+    // what takes long comes last
+    if (isFirst && this.isLearned) this.rivals.begin();
     this.strip.last(session.duration_s);
     if (session.playback) this.at(session.playback.position_s);
     this.colour();
@@ -137,8 +143,11 @@ export class ReplayPage {
     const words = pose
       ? [placeWords(pose), headingWords(pose), pose.motionModel && motionWords(pose.motionModel, pose.estimator)]
       : [];
-    const ids = ["place", "heading", "motion"];
-    for (const [index, id] of ids.entries()) tell(element(id, HTMLElement), words[index] || null);
+    for (const [index, id] of ["place", "heading", "motion"].entries()) {
+      const target = element(id, HTMLElement);
+      tell(target, words[index] || null);
+      if (target.parentElement) target.parentElement.hidden = target.hidden;
+    }
     element("motion", HTMLElement).style.setProperty("--motion", motionColour(pose?.motionModel ?? null));
     const { style, nearEdge } = this.viewer.overlay;
     const shown = { style, nearEdge, pose: this.viewer.locked, kind: "replay", aligning: false } as const;

@@ -39,14 +39,18 @@ export class Rivals {
     private readonly use: (estimator: string) => void,
   ) {}
 
-  /** Show a session's estimators; the one that the picture is drawn by is drawn first. */
+  /** Show a session's estimators. */
   show(session: Session): void {
-    const first = this.session === null;
     this.session = session;
-    if (first && session.estimator !== "") void this.choose(session.estimator);
     const listed = JSON.stringify([session.estimator, session.estimators, session.unavailable]);
     if (listed !== this.listed) this.list();
     this.listed = listed;
+  }
+
+  /** Draw the curves of the estimator that the picture is drawn by. */
+  begin(): void {
+    const estimator = this.session?.estimator ?? "";
+    if (estimator !== "") void this.choose(estimator);
   }
 
   /** Work out all that the walk allows, one after another. */
