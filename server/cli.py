@@ -32,6 +32,7 @@ from server.options import (
     stop_asked,
 )
 from server.progress import progress_bar
+from server.reviewing.command import export
 from server.serve_command import serve
 from server.simulate_command import simulate
 from server.token_command import token
@@ -55,6 +56,7 @@ app.command()(serve)
 app.command()(token)
 app.command()(doctor)
 app.command()(simulate)
+app.command()(export)
 app.add_typer(calibrate, name="calibrate")
 out = Console(highlight=False)
 err = Console(stderr=True, highlight=False)
