@@ -6,13 +6,10 @@ from typing import Any, Final
 import numpy as np
 
 from server.console.pinhole import fov_of, seen_by_pinhole, upright
-from server.console.scene import FRUSTUM_M, SKY, START_VIEW_M, decoded
+from server.console.scene import SKY, START_VIEW_M, decoded
 from server.console.walk import Walk
 from tracker.geometry import wxyz_from_matrix
 
-#: Nearer things are not drawn: the walker's own frustum is among them.
-_NEAR_M: Final = FRUSTUM_M + 0.6
-_USUAL_NEAR_M: Final = 0.05
 _USUAL_FOV_RAD: Final = float(np.radians(60.0))
 _QUALITY: Final = 75
 
@@ -35,16 +32,16 @@ class Eyes:
         self._looking: dict[int, _Looking] = {}
 
     @property
-    def anybody(self) -> bool:
-        """Whether anybody looks through a walker's eyes."""
-        return bool(self._looking)
+    def names(self) -> frozenset[str]:
+        """Of the walks that somebody looks through the eyes of."""
+        return frozenset(looking.name for looking in self._looking.values())
 
     def toggle(self, client: Any, name: str | None) -> bool:
         """Begin for a client, or end; return whether it looks through a walker's eyes now."""
         if client.client_id in self._looking or name is None:
             self._looking.pop(client.client_id, None)
             client.scene.set_background_image(SKY, format="png")
-            client.camera.near, client.camera.fov = _USUAL_NEAR_M, _USUAL_FOV_RAD
+            client.camera.fov = _USUAL_FOV_RAD
             client.camera.up_direction = (0.0, 0.0, 1.0)
             client.camera.position, client.camera.look_at = START_VIEW_M, (0.0, 0.0, 0.0)
             return False
@@ -86,7 +83,7 @@ def _show(client: Any, walk: Walk) -> None:
     if picture is not None:
         picture = seen_by_pinhole(picture, frame.camera, frame.quarter_turns, float(client.camera.aspect))
     with client.atomic():
-        client.camera.near, client.camera.fov = _NEAR_M, fov_of(frame.camera, frame.quarter_turns)
+        client.camera.fov = fov_of(frame.camera, frame.quarter_turns)
         client.camera.up_direction = -T_site_eye[:3, 1]
         client.camera.position = T_site_eye[:3, 3]
         client.camera.wxyz = wxyz_from_matrix(T_site_eye[:3, :3])

@@ -35,7 +35,7 @@ class Running:
         self._scene, self._eyes = Scene(server, self._layers), Eyes()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._desk = Desk(server, self._layers, self)
-        server.on_client_disconnect(lambda client: self._soon(self._eyes.forget, client))
+        server.on_client_disconnect(lambda client: self._soon(self._forget, client))
 
     async def run(self) -> None:
         """Watch and draw until cancelled."""
@@ -115,8 +115,12 @@ class Running:
         except TimeoutError:
             client.add_notification("No picture", "The browser did not draw it in time: try again.", color="orange")
 
+    def _forget(self, client: Any) -> None:
+        self._eyes.forget(client)
+        self._show_layers()
+
     def _show_layers(self) -> None:
-        self._scene.show_layers(hides_land=self._eyes.anybody)
+        self._scene.show_layers(self._eyes.names)
 
     def _soon(self, do: Any, *arguments: Any) -> None:
         if self._loop is not None:

@@ -20,7 +20,7 @@ START_VIEW_M: Final = (-55.0, -95.0, 70.0)
 #: glTF's axes in the site frame: x east, y up, z south, so that y becomes z.
 _WXYZ_SITE_GLTF: Final = (float(np.sqrt(0.5)), float(np.sqrt(0.5)), 0.0, 0.0)
 #: How far before the camera its picture is drawn.
-FRUSTUM_M: Final = 2.0
+_FRUSTUM_M: Final = 2.0
 #: From the zenith to the horizon, behind everything: viser stretches it over the canvas.
 SKY: Final = np.linspace((0x2B, 0x3A, 0x4C), (0xB9, 0xC4, 0xC9), 64)[:, None, :].repeat(2, axis=1).astype(np.uint8)
 _THUMBNAIL_PX: Final = 240
@@ -63,6 +63,7 @@ class Scene:
         self._parts: list[tuple[Part, Any]] = []
         self._today: Any = None
         self._nodes: dict[str, _Nodes] = {}
+        self._eyes: frozenset[str] = frozenset()
         server.initial_camera.position = START_VIEW_M
         server.initial_camera.look_at = (0.0, 0.0, 0.0)
         server.initial_camera.far = 5000.0
@@ -80,19 +81,27 @@ class Scene:
             self._today = self._scene.add_glb("/site/today", today, wxyz=_WXYZ_SITE_GLTF)
         self.show_layers()
 
-    def show_layers(self, *, hides_land: bool = False) -> None:
-        """Show what `layers` says by now; land and plants would hide the picture through a walker's eyes."""
+    def show_layers(self, eyes: frozenset[str] = frozenset()) -> None:
+        """Show what `layers` says by now.
+
+        Through a walker's eyes, of the walks that are named, land and plants would hide the picture, and so would what is drawn of
+        the walker: viser's own near plane cannot leave it out, since it would leave out the picture, too.
+        """
+        self._eyes = eyes
         layers = self._layers
         for part, handle in self._parts:
-            handle.visible = layers.buildings if part.layer == "buildings" else layers.land and not hides_land
+            handle.visible = layers.buildings if part.layer == "buildings" else layers.land and not eyes
             handle.color = EVIDENCE_COLOURS[part.evidence] if layers.evidence else part.colour
             handle.opacity = None if layers.opacity >= 1.0 else layers.opacity
         if self._today is not None:
             self._today.visible = layers.today
         for name, nodes in self._nodes.items():
-            if nodes.ellipsoid is not None:
-                nodes.ellipsoid.visible = layers.ellipsoids
+            self._show_nodes(name, nodes)
             self._scene.add_frame(f"/walks/{name}/path", show_axes=False, visible=layers.paths)
+
+    def _show_nodes(self, name: str, nodes: _Nodes) -> None:
+        nodes.frustum.visible = nodes.label.visible = name not in self._eyes
+        nodes.ellipsoid.visible = self._layers.ellipsoids and name not in self._eyes
 
     def draw(self, walk: Walk, now_s: float) -> None:
         """Draw where a walk is now; nothing happens before its first pose."""
@@ -124,7 +133,6 @@ class Scene:
                 f"{place}/camera",
                 fov=2.0 * float(np.arctan2(camera.height_px / 2.0, camera.fy_px)),
                 aspect=camera.width_px / camera.height_px,
-                scale=FRUSTUM_M,
                 thickness=0.05,
                 cast_shadow=False,
             ),
@@ -134,10 +142,11 @@ class Scene:
                 opacity=0.35,
                 cast_shadow=False,
                 receive_shadow=False,
-                visible=self._layers.ellipsoids,
             ),
             label=self._scene.add_label(f"{place}/name", walk.title),
         )
+        self._show_nodes(walk.name, nodes)
+        nodes.frustum.scale = _FRUSTUM_M / nodes.frustum.compute_canonical_frustum_size()[2]
         self._scene.add_frame(f"{place}/path", show_axes=False, visible=self._layers.paths)
         return nodes
 
