@@ -6,7 +6,7 @@ import { found, overlooking, plainText } from "../../web/src/browse/finding";
 import { flightOf } from "../../web/src/browse/flight";
 import { isStill, ofGamepad, ofKeys, ofStick, STILL, together } from "../../web/src/browse/intent";
 import { after, begun, moved, stayOf, toggled } from "../../web/src/browse/journey";
-import { FINENESS, Pace } from "../../web/src/browse/pace";
+import { BEST, Pace, STEPS } from "../../web/src/browse/pace";
 import { lengthsOf } from "../../web/src/browse/span";
 import { isRigid, transform } from "../../web/src/frames";
 import type { Place } from "../../web/src/plan";
@@ -236,8 +236,8 @@ test("a monument is overlooked from the middle of the square, all of it in the p
   });
 });
 
-test("a motion that is too slow is drawn less finely, and finely again when there is time", () => {
-  const pace = new Pace();
+test("a motion that is too slow is drawn more cheaply, and better again when there is time", () => {
+  const pace = new Pace(false);
   let now_ms = 0;
   const draw = (ms: number, times: number): void => {
     for (let i = 0; i < times; i++) {
@@ -246,19 +246,19 @@ test("a motion that is too slow is drawn less finely, and finely again when ther
     }
   };
   draw(16, 60);
-  expect(pace.fineness).toBe(1);
-  draw(120, 40);
-  expect(pace.fineness).toBe(Math.min(...FINENESS));
+  expect(pace.step).toBe(BEST);
+  draw(60, 12);
+  expect(pace.step.fineness).toBeLessThan(1);
   draw(16, 30);
-  expect(pace.fineness).toBeLessThan(1); // it was too slow only just now
-  draw(16, 2000);
-  expect(pace.fineness).toBe(1);
+  expect(pace.step).not.toBe(BEST); // it was too slow only just now
+  draw(16, 4000);
+  expect(pace.step).toBe(BEST);
+  draw(2000, 1);
+  expect(pace.step).toBe(STEPS.at(-1)); // nobody waits six times for that
 });
 
-test("a pause is no slow picture", () => {
-  const pace = new Pace();
-  for (let i = 0; i < 20; i++) pace.drawn(5000, 5000 * i);
-  expect(pace.fineness).toBe(1);
+test("without a graphics card one begins with the cheapest", () => {
+  expect(new Pace(true).step).toBe(STEPS.at(-1));
 });
 
 test("a span is told along the ground and upwards", () => {

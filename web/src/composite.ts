@@ -32,6 +32,7 @@ import type { Laying } from "./overlay";
 import { reachOf } from "./picture";
 import type { Effort } from "./quality";
 import type { Doubted } from "./soften";
+import { drawsInSoftware } from "./software";
 
 const VERTEX = /* glsl */ `
   attribute vec2 place; attribute vec2 drawn; attribute float known;
@@ -172,11 +173,7 @@ export class Composite {
 
   /** Whether there is no graphics card: then only the coarsest level can keep up with the pictures. */
   get drawsInSoftware(): boolean {
-    const gl = this.renderer.getContext();
-    const named = gl.getExtension("WEBGL_debug_renderer_info");
-    return /swiftshader|llvmpipe|software|basic render/i.test(
-      String(gl.getParameter(named ? named.UNMASKED_RENDERER_WEBGL : gl.RENDERER)),
-    );
+    return drawsInSoftware(this.renderer);
   }
 
   /** Draw this square from now on. */

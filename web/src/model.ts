@@ -11,10 +11,10 @@ import {
   Scene,
   Vector3,
 } from "three";
-import { MeshoptDecoder } from "three/addons/libs/meshopt_decoder.module.js";
-import { type GLTF, GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+import type { GLTF } from "three/addons/loaders/GLTFLoader.js";
 import { type Batches, batched } from "./batches";
 import { EVIDENCE_COLOURS } from "./evidence";
+import { loader } from "./gltf";
 import { bestOf, levelAt } from "./levels";
 import type { Effort } from "./quality";
 import type { Sun } from "./sun";
@@ -25,8 +25,10 @@ import type { Thing } from "./thing";
 /** What is no monument, like the ground and what grows there, while the rest is tinted. */
 const UNTOLD = new Color(0.62, 0.62, 0.6);
 
+/** How it is drawn. */
+type Drawn = Pick<Effort, "plain" | "shadows" | "occluders" | "coarse">;
 /** Where nobody chooses. */
-const ALL = { plain: false, shadows: true, occluders: true, coarse: false };
+const ALL: Drawn = { plain: false, shadows: true, occluders: true, coarse: false };
 
 /** All that changes its level together: a monument, or a piece of ground. */
 interface Group {
@@ -35,8 +37,6 @@ interface Group {
   level: number | null;
   variant: string | null;
 }
-
-const loader = new GLTFLoader().setMeshoptDecoder(MeshoptDecoder);
 
 export class Square {
   readonly scene = new Scene();
@@ -54,7 +54,7 @@ export class Square {
   private readonly hideBackdrop: boolean;
   private readonly materials: string | null;
   private refining: Promise<void> | null = null;
-  private effort: Pick<Effort, "plain" | "shadows" | "occluders" | "coarse"> = ALL;
+  private effort: Drawn = ALL;
 
   /** `levels` are the model's files, the finest first; the last one is in `first`. */
   private constructor(
@@ -137,7 +137,7 @@ export class Square {
   }
 
   /** Choose what of it is drawn, and how. */
-  work(effort: Effort): void {
+  work(effort: Drawn): void {
     this.effort = effort;
     this.light.shadows = effort.shadows;
     if (this.occluders) this.occluders.visible = effort.occluders;

@@ -1,8 +1,7 @@
 /** What stands today and hides the model: drawn into its depth alone, never into its colours. three.js only. */
 
 import { type Group, Mesh, MeshBasicMaterial } from "three";
-import { MeshoptDecoder } from "three/addons/libs/meshopt_decoder.module.js";
-import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+import { loader } from "./gltf";
 
 /** Before everything else of the scene, whatever stands where. */
 const FIRST = -100;
@@ -12,7 +11,7 @@ const GROUND = "ground";
 
 /** Load a site's stand-ins for what is there today. */
 export async function loadOccluders(url: string): Promise<Group> {
-  const gltf = await new GLTFLoader().setMeshoptDecoder(MeshoptDecoder).loadAsync(url);
+  const gltf = await loader.loadAsync(url);
   const unseen = new MeshBasicMaterial({ colorWrite: false });
   gltf.scene.traverse((object) => {
     if (!(object instanceof Mesh)) return;

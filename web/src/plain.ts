@@ -19,6 +19,7 @@ const VERTEX = /* glsl */ `
   #include <color_pars_vertex>
   #include <lights_pars_begin>
   #include <shadowmap_pars_vertex>
+  #include <fog_pars_vertex>
   uniform vec3 base; uniform float grey;
   varying vec2 vAt; varying vec3 vSky; varying vec3 vSun; varying vec3 vTint;
   void main() {
@@ -30,6 +31,7 @@ const VERTEX = /* glsl */ `
     #include <project_vertex>
     #include <worldpos_vertex>
     #include <shadowmap_vertex>
+    #include <fog_vertex>
     vec3 upright = normalize(transformedNormal);
     vAt = uv;
     vTint = mix(base * vColor.rgb, vColor.rgb, grey);
@@ -48,6 +50,7 @@ const FRAGMENT = /* glsl */ `
   #include <common>
   #include <lights_pars_begin>
   #include <shadowmap_pars_fragment>
+  #include <fog_pars_fragment>
   uniform sampler2D map; uniform float grey; uniform float share; uniform float shade;
   varying vec2 vAt; varying vec3 vSky; varying vec3 vSun; varying vec3 vTint;
   void main() {
@@ -61,6 +64,9 @@ const FRAGMENT = /* glsl */ `
     #endif
     float covers = share + (1.0 - share) * shade * (1.0 - seen);
     gl_FragColor = vec4(colour * (vSky + vSun * seen) * share, covers);
+    #include <tonemapping_fragment>
+    #include <colorspace_fragment>
+    #include <fog_fragment>
   }`;
 
 /** What all plain surfaces of a model share. */
@@ -76,11 +82,13 @@ export function plainOf(full: MeshStandardMaterial, share: number, common: Commo
     fragmentShader: FRAGMENT,
     uniforms: {
       ...UniformsUtils.clone(UniformsLib.lights),
+      ...UniformsUtils.clone(UniformsLib.fog),
       map: { value: null },
       base: { value: new Color() },
       share: { value: share },
     },
     lights: true,
+    fog: true,
     vertexColors: full.vertexColors,
     side: full.side,
   });

@@ -1,11 +1,10 @@
 /** The surface that visitors walk on today and what stands in their way, read from the site's file. three.js only to read it. */
 
 import { Mesh, type Object3D, Vector3 as Vector } from "three";
-import { MeshoptDecoder } from "three/addons/libs/meshopt_decoder.module.js";
-import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { Ground } from "./browse/ground";
 import { Edges, type Triangle } from "./edges";
 import type { Vector3 } from "./frames";
+import { loader } from "./gltf";
 
 /** Load a site's walkable surface of today and work out its edges. */
 export async function loadEdges(url: string): Promise<Edges> {
@@ -19,7 +18,7 @@ export async function loadGround(url: string, model: string): Promise<Ground> {
 }
 
 async function load(url: string, model: string): Promise<Record<"walkable" | "collision", Triangle[]>> {
-  const { scene } = await new GLTFLoader().setMeshoptDecoder(MeshoptDecoder).loadAsync(url);
+  const { scene } = await loader.loadAsync(url);
   scene.updateMatrixWorld(true);
   const found = { walkable: [] as Triangle[], collision: [] as Triangle[] };
   scene.traverse((object) => {

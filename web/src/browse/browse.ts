@@ -23,6 +23,7 @@ import { Pointer } from "./pointer";
 import { Sheets } from "./sheets";
 import { Stage } from "./stage";
 import { Tape } from "./tape";
+import { isTaken } from "./typing";
 import type { Way } from "./way";
 
 /** From over the south-eastern corner, along the square. */
@@ -159,14 +160,14 @@ export class Browse {
     });
   }
 
-  private key({ key, code, target, ctrlKey, metaKey, altKey }: KeyboardEvent): void {
+  private key(event: KeyboardEvent): void {
+    const { key, code, target } = event;
     if (key === "Escape") {
       if (this.sheets.close()) return;
       if (this.tape.isOn) this.tape.toggle();
       else this.card.show(null, null);
     }
-    const writes = target instanceof HTMLInputElement || target instanceof HTMLSelectElement;
-    if (ctrlKey || metaKey || altKey || writes) return;
+    if (isTaken(event)) return;
     if (key === "1") this.move("orbit");
     else if (key === "2") this.move("walk");
     else if (key === "3") this.move("fly");
@@ -282,6 +283,7 @@ export class Browse {
     try {
       for (const epoch of this.epochs.there) this.grounds.set(epoch, await loadGround(walkable, epoch));
       this.showEpoch();
+      this.standAgain(); // from now on one walks from there
     } catch (error) {
       console.warn("nobody can walk: the ground did not come", error);
     }

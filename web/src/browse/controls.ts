@@ -1,6 +1,7 @@
 /** Keys, a stick on the screen, a gamepad and drags on the picture, as one intent and turns of the head. DOM only. */
 
 import { type Intent, moves, ofGamepad, ofKeys, ofStick, STILL, together } from "./intent";
+import { isTaken } from "./typing";
 
 /** Turned by a drag across so many pixels by one radian. */
 const PX_PER_RAD = 420;
@@ -57,8 +58,8 @@ export class Controls {
   }
 
   private press(event: KeyboardEvent): void {
-    const { code, target, ctrlKey, metaKey, altKey } = event;
-    if (ctrlKey || metaKey || altKey || writes(target)) return;
+    const { code } = event;
+    if (isTaken(event)) return;
     this.held.add(code);
     if (!moves(code)) return;
     event.preventDefault(); // arrows would scroll a panel
@@ -110,13 +111,6 @@ export class Controls {
     for (const end of ["pointerup", "pointercancel", "lostpointercapture"] as const)
       stick.addEventListener(end, () => put(0, 0));
   }
-}
-
-/** Whether keys that are pressed there belong to the page's own controls. */
-function writes(target: EventTarget | null): boolean {
-  return (
-    target instanceof HTMLInputElement || target instanceof HTMLSelectElement || target instanceof HTMLTextAreaElement
-  );
 }
 
 function gamepads(): Gamepad[] {

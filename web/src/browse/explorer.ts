@@ -140,6 +140,7 @@ export class Explorer {
     }
     if (this.flight) return this.fly(now_ms);
     if (this.way === "orbit") return this.circle(intent, dt_s);
+    if (isStill(intent) && !this.walker) return false;
     const { eye } = this;
     const turned_ = {
       ...eye,
@@ -197,15 +198,14 @@ export class Explorer {
   private stride(eye: Eye, intent: Intent, dt_s: number): boolean {
     const { ground } = this;
     if (!ground) return false;
-    if (!this.walker && !isStill(intent)) this.walker = this.stepOff(eye, ground);
-    if (!this.walker) {
-      this.put(poseOf(eye));
-      return false;
-    }
-    this.walker = walk(this.walker, intent, eye.heading_rad, ground, this.eyeHeight_m, dt_s);
-    const [e, n] = this.walker.feet_site_m;
-    this.put(poseOf({ ...eye, place_site_m: [e, n, this.walker.eyes_m] }));
-    return !isAtRest(this.walker, this.eyeHeight_m);
+    const before = this.walker ?? this.stepOff(eye, ground);
+    if (!before) return false;
+    const walker = walk(before, intent, eye.heading_rad, ground, this.eyeHeight_m, dt_s);
+    const [e, n] = walker.feet_site_m;
+    this.put(poseOf({ ...eye, place_site_m: [e, n, walker.eyes_m] }));
+    const rests = isStill(intent) && isAtRest(walker, this.eyeHeight_m);
+    this.walker = rests ? null : walker;
+    return !rests;
   }
 
   /** Somebody who stood where nobody can stand, like at a stop of the tour among benches, steps to the ground beside. */
@@ -217,7 +217,8 @@ export class Explorer {
 
   /** Turn the head, or do nothing where a drag turns the square. */
   private look(turn_rad: number, tilt_rad: number): void {
-    if (this.way === "orbit" || this.flight || this.leader) return;
+    this.release();
+    if (this.way === "orbit" || this.flight) return;
     const { eye } = this;
     const heading_rad = turned(eye.heading_rad + turn_rad);
     this.put(poseOf({ ...eye, heading_rad, pitch_rad: tilted(eye.pitch_rad + tilt_rad) }));

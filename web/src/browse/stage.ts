@@ -14,12 +14,13 @@ import type { Standpoint } from "../describe";
 import { T_gltf_site, type Vector3 } from "../frames";
 import type { Square } from "../model";
 import { Sky } from "../sky";
+import { drawsInSoftware } from "../software";
 import type { Sun } from "../sun";
 import type { Thing } from "../thing";
 import { Controls } from "./controls";
 import { Explorer } from "./explorer";
 import type { Eye } from "./eye";
-import { Pace } from "./pace";
+import { BEST, Pace, type Step } from "./pace";
 import { Veil } from "./veil";
 import type { Leader, Turn, World } from "./world";
 
@@ -35,8 +36,10 @@ const REST_MS = 180;
 interface Layer {
   readonly square: Square;
   readonly sky: Sky;
-  /** Whether its shadows are to be drawn anew. */
+  /** Whether its shadows are to be drawn anew, and whether they ever were. */
   stale: boolean;
+  thrown: boolean;
+  plain: boolean;
 }
 
 export class Stage implements World {
@@ -48,12 +51,16 @@ export class Stage implements World {
   private readonly layers = new Map<Square, Layer>();
   private readonly turns = new Set<Turn>();
   private readonly veil = new Veil();
-  private readonly pace = new Pace();
+  private readonly pace: Pace;
   private below: Layer | null = null;
   private above: Layer | null = null;
   private share = 0;
+  private fades = false;
   private asked = false;
   private guestsMove = false;
+  private isHurried = false;
+  private fineness = 1;
+  private isDressing = false;
   private resting: number | null = null;
   private moved_ms = Number.NEGATIVE_INFINITY;
   private drawn_ms: number | null = null;
@@ -74,6 +81,11 @@ export class Stage implements World {
     this.renderer.shadowMap.autoUpdate = false;
     this.renderer.info.autoReset = false;
     this.renderer.autoClear = false;
+    this.renderer.debug.checkShaderErrors = import.meta.env.DEV; // to ask for errors waits for the compiler
+    const inSoftware = drawsInSoftware(this.renderer);
+    this.pace = new Pace(inSoftware);
+    // blurring what is behind the panels costs as much as drawing the model
+    document.body.classList.toggle("frugal", inSoftware);
     this.guests.matrixAutoUpdate = false;
     this.guests.matrix.set(...(T_gltf_site as Parameters<typeof this.guests.matrix.set>));
     this.explorer = new Explorer(this.camera, canvas, new Controls(canvas, stick), eyeHeight_m, () => this.ask());
@@ -83,8 +95,8 @@ export class Stage implements World {
 
   /** What the last drawing cost, shadows left out. */
   get stats(): Readonly<Record<"drawCalls" | "triangles" | "framesDrawn" | "fineness", number>> {
-    const { cost, pictures, pace } = this;
-    return { drawCalls: cost.calls, triangles: cost.triangles, framesDrawn: pictures, fineness: pace.fineness };
+    const { cost, pictures, fineness } = this;
+    return { drawCalls: cost.calls, triangles: cost.triangles, framesDrawn: pictures, fineness };
   }
 
   /** Whether all that was asked for is drawn, as finely as it can be; what moves by itself never is. */
@@ -108,6 +120,7 @@ export class Stage implements World {
   show(below: Square, above: Square | null = null, share = 0): void {
     this.below = this.layer(below);
     this.above = above && share > 0 ? this.layer(above) : null;
+    this.fades ||= share !== this.share;
     this.share = share;
     const most = this.above && share > 0.5 ? this.above : this.below;
     if (this.guests.parent !== most.square.scene) most.square.scene.add(this.guests);
@@ -180,7 +193,7 @@ export class Stage implements World {
 
   /** Draw now, at its finest, and return a copy. */
   picture(): HTMLCanvasElement {
-    this.resize(1);
+    this.take(BEST);
     this.render();
     const { width, height } = this.canvas;
     const copy = document.createElement("canvas");
@@ -196,12 +209,13 @@ export class Stage implements World {
   private layer(square: Square): Layer {
     const known = this.layers.get(square);
     if (known) return known;
-    const layer: Layer = { square, sky: new Sky(), stale: true };
+    const layer: Layer = { square, sky: new Sky(), stale: true, thrown: false, plain: false };
     this.layers.set(square, layer);
     square.scene.add(layer.sky.mesh);
     square.scene.fog = new Fog(0, ...FOG_M);
     (square.scene.fog as Fog).color = layer.sky.horizon;
     square.changed = () => {
+      if (this.isDressing) return;
       layer.stale = true;
       this.refined();
       this.ask();
@@ -223,16 +237,23 @@ export class Stage implements World {
     camera.aspect = canvas.clientWidth / Math.max(1, canvas.clientHeight);
     camera.fov = fieldOf(camera.aspect);
     camera.updateProjectionMatrix();
+    this.resize();
     this.ask();
   }
 
-  private resize(fineness: number): void {
+  private resize(): void {
     const { renderer, canvas } = this;
-    const ratio = Math.min(window.devicePixelRatio, FINEST) * fineness;
-    const size = new Vector2(canvas.clientWidth, canvas.clientHeight);
-    if (renderer.getPixelRatio() === ratio && renderer.getSize(new Vector2()).equals(size)) return;
-    renderer.setPixelRatio(ratio);
-    renderer.setSize(size.x, size.y, false);
+    renderer.setPixelRatio(Math.min(window.devicePixelRatio, FINEST));
+    renderer.setSize(canvas.clientWidth, canvas.clientHeight, false);
+  }
+
+  /**
+   * Draw into a corner of the canvas and enlarge that: to make the canvas itself smaller would wait for all that is being drawn.
+   */
+  private fit(fineness: number): void {
+    const { renderer, canvas } = this;
+    renderer.setViewport(0, 0, canvas.clientWidth * fineness, canvas.clientHeight * fineness);
+    canvas.style.transform = fineness === 1 ? "" : `scale(${1 / fineness})`;
   }
 
   private draw(now_ms: number): void {
@@ -243,17 +264,33 @@ export class Stage implements World {
     for (const turn of this.turns) this.guestsMove = turn(now_ms) || this.guestsMove;
     if (!this.below) return;
     this.camera.updateMatrixWorld();
-    const isMoving = !this.camera.matrixWorld.equals(before) || this.above !== null || this.guestsMove;
+    const isMoving = !this.camera.matrixWorld.equals(before) || this.fades || this.guestsMove;
+    this.fades = false;
     if (isMoving) {
       if (this.drawn_ms !== null) this.pace.drawn(now_ms - this.drawn_ms, now_ms);
       this.moved_ms = now_ms;
     }
     this.drawn_ms = isMoving ? now_ms : null;
-    const rests = now_ms - this.moved_ms >= REST_MS || this.pace.fineness === 1;
-    this.resize(rests ? 1 : this.pace.fineness);
+    const rests = now_ms - this.moved_ms >= REST_MS || this.pace.step === BEST;
+    this.take(rests ? BEST : this.pace.step);
     this.render();
     if (!rests) this.restLater();
     if (goesOn || this.guestsMove) this.ask();
+  }
+
+  /** Draw by that step from now on. */
+  private take(step: Step): void {
+    this.fit(step.fineness);
+    this.fineness = step.fineness;
+    this.isHurried = step.plain;
+    for (const layer of this.layers.values()) {
+      if (layer.plain === step.plain) continue;
+      layer.plain = step.plain;
+      this.isDressing = true;
+      layer.square.work({ plain: step.plain, coarse: step.plain, shadows: true, occluders: true });
+      this.isDressing = false;
+      layer.stale ||= !step.plain;
+    }
   }
 
   private restLater(): void {
@@ -272,7 +309,7 @@ export class Stage implements World {
     this.paint(below, cost);
     if (above && this.share < 1) this.veil.take(renderer);
     if (above) this.paint(above, cost);
-    if (above && this.share < 1) this.veil.draw(renderer, 1 - this.share);
+    if (above && this.share < 1) this.veil.draw(renderer, 1 - this.share, this.fineness);
     this.cost = cost;
     this.pictures += 1;
     for (const drawn of this.waiting.splice(0)) drawn();
@@ -281,9 +318,14 @@ export class Stage implements World {
   private paint(layer: Layer, cost: { calls: number; triangles: number }): void {
     const { renderer, camera } = this;
     if (layer.square.update(camera.position)) layer.stale = true;
-    renderer.shadowMap.needsUpdate = layer.stale;
-    if (layer.stale) this.ask(); // the next drawing is counted without the shadows'
-    layer.stale = false;
+    // shadows cost as much as all else: where there is no time for them the old ones stay until there is
+    const throwsAnew = layer.stale && !(this.isHurried && layer.thrown);
+    renderer.shadowMap.needsUpdate = throwsAnew;
+    if (throwsAnew) {
+      this.ask(); // the next drawing is counted without the shadows'
+      layer.stale = false;
+      layer.thrown = true;
+    }
     const before = { ...renderer.info.render };
     renderer.clear();
     renderer.render(layer.square.scene, camera);

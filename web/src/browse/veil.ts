@@ -17,16 +17,16 @@ const VERTEX = /* glsl */ `
 
 /** The colours are the screen's own: they are neither mapped nor converted. */
 const FRAGMENT = /* glsl */ `
-  uniform sampler2D picture; uniform float share;
+  uniform sampler2D picture; uniform float share; uniform float part;
   varying vec2 vAt;
-  void main() { gl_FragColor = vec4(texture2D(picture, vAt).rgb, share); }`;
+  void main() { gl_FragColor = vec4(texture2D(picture, vAt * part).rgb, share); }`;
 
 export class Veil {
   private picture: FramebufferTexture | null = null;
   private readonly scene = new Scene();
   private readonly camera = new OrthographicCamera();
   private readonly material = new ShaderMaterial({
-    uniforms: { picture: { value: null }, share: { value: 1 } },
+    uniforms: { picture: { value: null }, share: { value: 1 }, part: { value: 1 } },
     vertexShader: VERTEX,
     fragmentShader: FRAGMENT,
     transparent: true,
@@ -51,10 +51,10 @@ export class Veil {
     renderer.copyFramebufferToTexture(this.picture);
   }
 
-  /** Draw what was kept, by that share. */
-  draw(renderer: WebGLRenderer, share: number): void {
-    const { picture, share: opacity } = this.material.uniforms as Record<"picture" | "share", { value: unknown }>;
-    [picture.value, opacity.value] = [this.picture, share];
+  /** Draw what was kept, by that share; `part` is how much of each side of the canvas was drawn to. */
+  draw(renderer: WebGLRenderer, share: number, part: number): void {
+    const uniforms = this.material.uniforms as Record<"picture" | "share" | "part", { value: unknown }>;
+    [uniforms.picture.value, uniforms.share.value, uniforms.part.value] = [this.picture, share, part];
     renderer.render(this.scene, this.camera);
   }
 }
