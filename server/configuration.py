@@ -9,11 +9,13 @@ from typing import Annotated, Any, Final, Literal
 import msgspec
 from msgspec import Meta, Struct
 
+from server.limits import Limits
 from tracker.errors import InputError
 
 DEFAULT_PLACE: Final = Path("~/.config/agora/server.toml")
 _LARGEST_BYTES: Final = 1_000_000
 _PREFIX: Final = "AGORA_"
+_LIMITS: Final = Limits()
 
 
 class Configuration(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -51,6 +53,20 @@ class Configuration(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     ] = "info"
     max_sessions: Annotated[int, Meta(ge=1, le=1000, description="Walks at a time, replays among them.")] = 16
     max_viewers: Annotated[int, Meta(ge=1, le=100_000, description="Viewers of one walk.")] = 64
+    max_requests_per_s: Annotated[
+        float, Meta(gt=0.0, description="Requests, and attempts to connect, of one address in the long run.")
+    ] = _LIMITS.requests_per_s
+    max_burst: Annotated[float, Meta(ge=1.0, description="So many of them at once.")] = _LIMITS.burst
+    max_connections: Annotated[int, Meta(ge=1, description="Connections of one address at a time.")] = (
+        _LIMITS.connections
+    )
+    max_head_s: Annotated[float, Meta(gt=0.0, description="A request's head must have arrived by then.")] = (
+        _LIMITS.header_s
+    )
+    proxies: Annotated[
+        list[str],
+        Meta(description="Addresses of proxies before this server: it counts whom they name in X-Forwarded-For."),
+    ] = msgspec.field(default_factory=lambda: sorted(_LIMITS.proxies))
     max_upload_mb: Annotated[int, Meta(ge=1, description="The largest walk that may be uploaded, 10^6 bytes.")] = 2000
     max_stored_mb: Annotated[int, Meta(ge=1, description="All uploaded walks together, 10^6 bytes.")] = 20_000
     keep_days: Annotated[
@@ -78,6 +94,17 @@ class Configuration(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     bus_replicas: Annotated[
         int, Meta(ge=1, le=5, description="On how many servers of NATS the sessions' state is kept.")
     ] = 1
+
+    @property
+    def limits(self) -> Limits:
+        """What one address may ask."""
+        return Limits(
+            requests_per_s=self.max_requests_per_s,
+            burst=self.max_burst,
+            connections=self.max_connections,
+            header_s=self.max_head_s,
+            proxies=frozenset(self.proxies),
+        )
 
     @property
     def hosts(self) -> frozenset[str]:

@@ -2,6 +2,7 @@
 
 import ipaddress
 from collections.abc import Collection
+from typing import Final
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
@@ -34,6 +35,10 @@ SECURITY_HEADERS = {
 }
 
 
+#: A browser that came by TLS comes by nothing else for a month: long enough for those who come again, and short enough for a server
+#: whose authority is its own, and which somebody may want to run without TLS one day.
+_STRICT_TRANSPORT: Final = "max-age=2592000"
+
 #: Methods that change nothing; everything else, and every WebSocket, is for our own pages and for programs.
 _READING = ("GET", "HEAD", "OPTIONS")
 
@@ -51,7 +56,10 @@ class Guard:
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
-        fault = self._fault(Headers(scope=scope), changes=scope.get("method") not in _READING)
+        asked = Headers(scope=scope)
+        # by `localhost` everything on this machine goes, at whatever port, and most of it without TLS
+        is_strict = scope["scheme"] == "https" and _host_name(asked.get("host", "")) != "localhost"
+        fault = self._fault(asked, changes=scope.get("method") not in _READING)
         if scope["type"] == "websocket":
             if fault:
                 await WebSocket(scope, receive, send).send_denial_response(PlainTextResponse(fault, 403))
@@ -64,6 +72,8 @@ class Guard:
                 headers = MutableHeaders(scope=message)
                 for name, value in SECURITY_HEADERS.items():
                     headers.setdefault(name, value)
+                if is_strict:
+                    headers.setdefault("Strict-Transport-Security", _STRICT_TRANSPORT)
             await send(message)
 
         app = PlainTextResponse(fault, 403) if fault else self._app

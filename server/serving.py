@@ -79,6 +79,7 @@ class Serving:
             models_folder=models,
             site=site_facts(site, models),
             access=self._access,
+            limits=configuration.limits,
             allowed_hosts=hosts,
             any_address=not configuration.on_loopback,
             sessions=sessions,

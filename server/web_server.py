@@ -42,10 +42,12 @@ class WebServer:
         self._socket = _bind(host, port)
         self._host, self._secure = host, "" if tls is None else "s"
         self.port: int = self._socket.getsockname()[1]
+        # a page of another kind, as a calibration's, has nobody at the door but for this
+        visitors: Visitors = getattr(app.state, "visitors", None) or Visitors(Limits(), monotonic)
         config = uvicorn.Config(
             app,
-            # a page of another kind, as a calibration's, has nobody at the door but for this
-            **protocols(getattr(app.state, "visitors", None) or Visitors(Limits(), monotonic)),
+            **protocols(visitors),
+            forwarded_allow_ips=sorted(visitors.limits.proxies),
             ws_max_size=MAX_FRAME_BYTES,
             ws_per_message_deflate=False,  # pictures are compressed already
             access_log=False,

@@ -6,6 +6,7 @@ import msgspec
 import pytest
 
 from server.configuration import Configuration, as_toml, read_configuration
+from server.limits import Limits
 from tracker.errors import InputError
 
 
@@ -27,6 +28,12 @@ def test_options_go_before_the_environment_before_the_file_before_the_defaults(t
     assert (read.host, read.port, read.max_sessions, read.keep_days) == ("10.0.0.1", 5, 4, 7.0)
     assert read.names == ["a.example", "b"]
     assert read.max_viewers == Configuration().max_viewers
+
+
+def test_the_limits_of_an_address_are_settings_like_others() -> None:
+    read = read_configuration(None, {"AGORA_MAX_BURST": "20", "AGORA_MAX_HEAD_S": "2.5", "AGORA_PROXIES": "10.0.0.7"})
+    assert read.limits == Limits(burst=20.0, header_s=2.5, proxies=frozenset({"10.0.0.7"}))
+    assert Configuration().limits == Limits()
 
 
 def test_what_is_printed_reads_back_as_itself_and_explains_every_field(tmp_path: Path) -> None:

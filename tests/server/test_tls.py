@@ -169,7 +169,10 @@ def test_pages_and_sockets_over_tls(secure: tuple[WebServer, LocalAuthority]) ->
     server, authority = secure
     assert server.url.startswith("https://")
     device = trusting(authority.path)
-    assert httpx.get(f"{server.url}ready", verify=device, trust_env=False).status_code == 200
+    ready = httpx.get(f"{server.url}ready", verify=device, trust_env=False, headers={"Host": "127.0.0.1"})
+    assert (ready.status_code, ready.headers["strict-transport-security"]) == (200, "max-age=2592000")
+    local = httpx.get(f"{server.url}ready", verify=device, trust_env=False, headers={"Host": "localhost"})
+    assert (local.status_code, "strict-transport-security" in local.headers) == (200, False)
     made = httpx.post(f"{server.url}api/codes", verify=device, trust_env=False)
     assert made.status_code == 201
     with RigLink(server.rig_url("walk"), token("rig", "walk"), obey, authority.tls.own_pem()) as link:

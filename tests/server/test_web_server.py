@@ -70,6 +70,7 @@ def test_pages(long_lived: WebServer, path: str, status: int, has: str) -> None:
     assert (response.status_code, has in response.text) == (status, True)
     assert response.headers["content-security-policy"].startswith("default-src 'self'")
     assert response.headers["x-content-type-options"] == "nosniff"
+    assert "strict-transport-security" not in response.headers
 
 
 def test_another_hosts_name_is_refused(long_lived: WebServer) -> None:
