@@ -21,7 +21,7 @@ from rich.progress import track
 from rich.table import Table
 from vqf import VQF
 
-from tests.benchmarks import ar_page
+from tests.benchmarks import ar_page, failover
 from tests.benchmarks.endurance import endure
 from tests.benchmarks.fanout import measure, rows_of
 from tracker.attitude import Madgwick
@@ -260,6 +260,11 @@ def fanout_rows() -> list[Row]:
     return [Row(*fields) for fields in rows_of(frames, poses, plain)]
 
 
+def failover_rows() -> list[Row]:
+    """Three servers on three nodes of NATS, of which some are killed."""
+    return [Row(*fields) for fields in failover.rows_of(failover.measure(5.0))]
+
+
 def camera_works() -> list[Callable[[], list[Row]]]:
     """What needs pictures; nothing where no walk with a camera is at hand."""
     path = next((path for path in CAMERA_LOGS if path.is_file()), None)
@@ -284,6 +289,7 @@ def main() -> None:
         attitude_rows,
         endurance_rows,
         fanout_rows,
+        failover_rows,
         lambda: replay_rows(simulated_log(), "without camera, 250 Hz", 20.0, repeats=3),
     ]
     works += camera_works()

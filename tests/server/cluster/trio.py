@@ -101,7 +101,7 @@ def trio(folder: Path) -> Iterator[Trio]:
             "AGORA_PORT": "0",
             "AGORA_LOG_FORMAT": "json",
         }
-        started = [stack.enter_context(_serve(folder / f"server-{i}", settings)) for i in range(3)]
+        started = [stack.enter_context(serve(folder / f"server-{i}", settings)) for i in range(3)]
         servers = [Served(process, journal) for process, journal in started]
         for server in servers:
             wait(lambda server=server: server.get("ready").status_code == 200)
@@ -109,8 +109,9 @@ def trio(folder: Path) -> Iterator[Trio]:
 
 
 @contextmanager
-def _serve(folder: Path, settings: dict[str, str]) -> Iterator[tuple["subprocess.Popen[str]", Path]]:
-    folder.mkdir(mode=0o700)
+def serve(folder: Path, settings: dict[str, str]) -> Iterator[tuple["subprocess.Popen[str]", Path]]:
+    """Run `agora serve`, which keeps its data in a folder that may be there already."""
+    folder.mkdir(mode=0o700, exist_ok=True)
     secret = folder / "secret"
     secret.write_bytes(_SECRET)
     secret.chmod(0o600)
@@ -145,6 +146,8 @@ class Rig:
     def __init__(self, port: int, session: str, mark: int) -> None:
         self._stop = threading.Event()
         self.asked: list[ControlRequest] = []
+        self.sent: dict[int, float] = {}
+        """When each pose was handed to the link, seconds."""
         self._link = RigLink(f"ws://127.0.0.1:{port}/ws/rig/{session}", _token("rig", session), self._answer)
         self._link.send_state({"estimator": "precise", "notice": session, "duration_s": float(mark)})
         self._mark = mark
@@ -158,6 +161,7 @@ class Rig:
     def _push(self) -> None:
         number, pose = self._mark, example_pose()
         while not self._stop.wait(1.0 / HZ):
+            self.sent[number] = monotonic()
             self._link.send_pose(encode_pose(replace(pose, seq=number)))
             number += 1
 
