@@ -24,6 +24,7 @@ export class Beside {
   private readonly panel: Panel;
   private escort: { readonly name: string; readonly escort: Escort } | null = null;
   private posesDrawn = 0;
+  private picture = { picture_ms: Number.NaN, now_ms: 0 };
   /** With whom one is: whose other viewers are shown, and are shown where this one looks from. */
   private mine: Guest | null = null;
 
@@ -38,7 +39,7 @@ export class Beside {
       leave: () => this.leave(),
       showing: () => this.tellLook(null),
     });
-    world.eachPicture((now_ms) => this.turn(now_ms));
+    world.eachPicture((picture_ms) => this.turn(picture_ms));
     document.addEventListener("visibilitychange", () => this.tellLook(document.hidden ? null : undefined));
     void this.look();
   }
@@ -126,7 +127,8 @@ export class Beside {
     if (!guest) return;
     const isStill = matchMedia("(prefers-reduced-motion: reduce)").matches;
     const escort = new Escort(way, this.world.eye, performance.now(), isStill);
-    const lead = (now_ms: number) => {
+    const lead = (picture_ms: number) => {
+      const now_ms = this.now(picture_ms);
       const walker = guest.walk.poses.at(now_ms);
       return walker && poseOf(escort.at(walker, now_ms));
     };
@@ -145,7 +147,14 @@ export class Beside {
     this.settle();
   }
 
-  private turn(now_ms: number): boolean {
+  /** Return the time at which a picture is drawn, the same for all of it: its own may be tens of milliseconds ago. */
+  private now(picture_ms: number): number {
+    if (this.picture.picture_ms !== picture_ms) this.picture = { picture_ms, now_ms: performance.now() };
+    return this.picture.now_ms;
+  }
+
+  private turn(picture_ms: number): boolean {
+    const now_ms = this.now(picture_ms);
     let moving = false;
     for (const [name, guest] of this.guests) {
       const isSelf = this.escort?.name === name && this.escort.escort.way === "eyes";

@@ -2,14 +2,15 @@
  * Which moment of a walk is shown now: a little in the past, so that poses before and after it have come. Pure: times come in.
  *
  * The rig's clock and this browser's share no zero: the fastest of the last messages sets it, as in `playback.ts`. How far in the
- * past is what the last two seconds' messages needed, and never more than `LONGEST_DELAY_MS`: who waits longer sees an old pose,
- * and `between.ts` bridges the little that a message is later than that. The moment shown never goes back, and its clock runs at
+ * past is what the last two seconds' messages needed, and never more than a limit: who waits longer sees an old pose, and
+ * `between.ts` bridges the little that a message is later than that. The moment shown never goes back, and its clock runs at
  * half to one and a half of its own pace while it comes nearer to where it should be.
  */
 
 import { HORIZON_NS } from "./between";
 
-const LONGEST_DELAY_MS = 75;
+/** Of a live walk: with what a message and a picture take on a busy machine, a pose is a tenth of a second old at most. */
+export const LIVE_DELAY_MS = 60;
 /** Between a message's coming and its use there is the browser's own unrest. */
 const MARGIN_MS = 4;
 const FIRST_DELAY_MS = 45;
@@ -36,6 +37,8 @@ export class Playout {
   private shown_ms: number | null = null;
   private asked_ms = 0;
 
+  constructor(private readonly longest_ms = LIVE_DELAY_MS) {}
+
   /** How far in the past the moment is wanted. */
   get delay_ms(): number {
     return this.wait_ms;
@@ -52,7 +55,7 @@ export class Playout {
     this.fastest_ms = Math.min(...this.arrivals.map(({ transit_ms }) => transit_ms));
     // until a message is there, the moment shown must not have passed the one before it
     const needs = this.arrivals.map(({ transit_ms, interval_ms: gap_ms }) => transit_ms - this.fastest_ms + gap_ms);
-    if (needs.length > 1) this.wait_ms = Math.min(LONGEST_DELAY_MS, Math.max(...needs) + MARGIN_MS);
+    if (needs.length > 1) this.wait_ms = Math.min(this.longest_ms, Math.max(...needs) + MARGIN_MS);
   }
 
   /** Return the moment to show at `now_ms`, on the rig's clock, ms; null before the first pose. */

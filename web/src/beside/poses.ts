@@ -7,7 +7,7 @@
 
 import type { PoseMessage } from "../wire";
 import { angleBetween, back, between, length, minus, onward, type Place, plus, scaled, slerp, turned } from "./between";
-import { Playout } from "./playout";
+import { LIVE_DELAY_MS, Playout } from "./playout";
 
 /** A walker who is shown, and of when. */
 export interface Shown extends Place {
@@ -31,13 +31,18 @@ const STILL: Place = { p_site_body_m: [0, 0, 0], wxyz_site_body: [1, 0, 0, 0] };
 
 export class Poses {
   private told: PoseMessage[] = [];
-  private playout = new Playout();
+  private playout: Playout;
   private last: { readonly place: Place; readonly t_ns: number; readonly now_ms: number } | null = null;
   /** What is shown less what was told, at `last`. */
   private rest = STILL;
 
-  /** `speed` is how many of the walk's seconds pass in one of ours: a replay's. */
-  constructor(private readonly speed = 1) {}
+  /** `speed` is how many of the walk's seconds pass in one of ours; poses are shown so late at most. */
+  constructor(
+    private readonly speed = 1,
+    private readonly longest_ms = LIVE_DELAY_MS,
+  ) {
+    this.playout = new Playout(longest_ms);
+  }
 
   /** The newest pose. */
   get newest(): PoseMessage | null {
@@ -94,7 +99,7 @@ export class Poses {
 
   private forget(): void {
     this.told = [];
-    this.playout = new Playout();
+    this.playout = new Playout(this.longest_ms);
     this.last = null;
     this.rest = STILL;
   }

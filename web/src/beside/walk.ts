@@ -20,9 +20,11 @@ export interface News {
 
 /** A pose that is older than this when the page looks again is not shown as one who walks now. */
 const SILENT_MS = 5000;
+/** A recording tells a pose with each picture, a dozen a second, and nobody waits for it: better late and smooth. */
+const RECORDED_DELAY_MS = 130;
 
 export class Walk {
-  poses = new Poses();
+  poses: Poses;
   session: Session;
   connection: Connection = "connecting";
   /** How many watch, this page among them; null before the server has said so. */
@@ -38,6 +40,7 @@ export class Walk {
     private readonly news: News,
   ) {
     this.session = session;
+    this.poses = posesOf(session);
     // of the pictures only the first is wanted, without what is on it: for its lens
     const url = new URL(`/ws/view/${encodeURIComponent(session.name)}?pictures=none`, location.href);
     url.protocol = url.protocol.replace("http", "ws");
@@ -86,7 +89,7 @@ export class Walk {
 
   private take(session: Session, number: number | null): void {
     // a replay that has been made faster or slower has another clock
-    if (session.playback?.speed !== this.session.playback?.speed) this.poses = new Poses(session.playback?.speed);
+    if (session.playback?.speed !== this.session.playback?.speed) this.poses = posesOf(session);
     this.session = session;
     this.number = number ?? this.number;
   }
@@ -105,4 +108,8 @@ export class Walk {
       console.warn("a message was left out", error);
     }
   }
+}
+
+function posesOf({ playback }: Session): Poses {
+  return playback === null ? new Poses() : new Poses(playback.speed, RECORDED_DELAY_MS);
 }
