@@ -21,7 +21,7 @@ from rich.progress import track
 from rich.table import Table
 from vqf import VQF
 
-from tests.benchmarks import ar_page, failover
+from tests.benchmarks import ar_page, beside, failover
 from tests.benchmarks.endurance import endure
 from tests.benchmarks.fanout import measure, rows_of
 from tracker.attitude import Madgwick
@@ -243,6 +243,12 @@ def page_rows(path: Path) -> list[Row]:
     return rows
 
 
+def beside_rows() -> list[Row]:
+    """Five start pages beside a live walk: wall time, so a busy machine is slower."""
+    found = beside.measure()
+    return [] if found is None else [Row(*fields) for fields in beside.rows_of(found)]
+
+
 def simulated_log(seconds: float = 120.0) -> Log:
     """A walk without camera, IMU at 250 Hz."""
     rig = default_rig()
@@ -289,6 +295,7 @@ def main() -> None:
         attitude_rows,
         endurance_rows,
         fanout_rows,
+        beside_rows,
         failover_rows,
         lambda: replay_rows(simulated_log(), "without camera, 250 Hz", 20.0, repeats=3),
     ]
