@@ -100,14 +100,21 @@ def _messages(log: Log, job: PackJob, estimator: str) -> list[bytes]:
             )
         except MalformedInput:
             continue  # as a replay leaves it out
-        messages.append(_smaller(message) if job.pictures else without_picture(message))
+        if not job.pictures:
+            messages.append(without_picture(message))
+        elif (small := _smaller(message)) is not None:
+            messages.append(small)
     return messages
 
 
-def _smaller(message: bytes) -> bytes:
-    """Return the message with its picture compressed further, where that makes it smaller."""
+def _smaller(message: bytes) -> bytes | None:
+    """Return the message with its picture compressed further, where that makes it smaller; None where it does not decode."""
     jpeg = message[FRAME_HEADER_BYTES:]
-    done, data = cv2.imencode(".jpg", EncodedPicture(jpeg).bgr(), (cv2.IMWRITE_JPEG_QUALITY, _QUALITY))
+    try:
+        pixels = EncodedPicture(jpeg).bgr()
+    except MalformedInput:
+        return None
+    done, data = cv2.imencode(".jpg", pixels, (cv2.IMWRITE_JPEG_QUALITY, _QUALITY))
     small = np.asarray(data).tobytes() if done else jpeg
     return message[:FRAME_HEADER_BYTES] + min(jpeg, small, key=len)
 

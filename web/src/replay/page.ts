@@ -174,8 +174,14 @@ export class ReplayPage {
 
   private help(): void {
     const sheet = element("help", HTMLDialogElement);
-    if (sheet.open) sheet.close();
-    else sheet.showModal();
+    if (!sheet.open) {
+      sheet.showModal();
+      return;
+    }
+    const { activeElement } = document;
+    sheet.close();
+    // what is gone must not have the next key
+    if (activeElement instanceof HTMLElement && sheet.contains(activeElement)) activeElement.blur();
   }
 
   private turn(now_ms: number): void {
