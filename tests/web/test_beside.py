@@ -65,7 +65,7 @@ def test_the_page_says_what_it_draws(page: ArPage) -> None:
     assert (stats["estimator"], stats["motionModel"], stats["walkers"]) == (ESTIMATOR, MOTION_MODEL, 1)
     assert stats["poseAgeMs"] >= 0.0
     assert stats["posesDrawn"] > 0
-    page.until("document.querySelector('#beside').innerText.includes('within 0.5 m')")
+    page.until("document.querySelector('#beside').innerText.includes('known within 0.5 m')")
     assert NAME in page.page.inner_text("#beside")
 
 

@@ -11,7 +11,7 @@ import { clockOff, clockWords } from "./clock";
 import { Composite } from "./composite";
 import { deedsOf } from "./deeds";
 import type { Standpoint } from "./describe";
-import { canDraw, element, publishNothing } from "./dom";
+import { canDraw, element, publishNothing, tell } from "./dom";
 import { headingOf, invertRigid, T_gltf_site, transform, type Vector3 } from "./frames";
 import { Guide } from "./guide";
 import { Hmd, worn } from "./hmd";
@@ -194,6 +194,9 @@ class Page {
       this.bar.show(message.session);
       this.care.show(message.session);
       this.sharing.show(message.session, message.role);
+    } else if (message?.type === "company") {
+      const others = message.watching - 1;
+      tell(element("watching", HTMLElement), others > 0 ? say("ar.others", { count: others }) : null);
     } else if (message?.type === "reply" && !this.align.replied(message.reply) && !message.reply.ok) {
       this.hud.announce(message.reply.error ?? say("ar.did_not_work"));
     }

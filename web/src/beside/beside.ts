@@ -158,7 +158,7 @@ export class Beside {
     let moving = false;
     for (const [name, guest] of this.guests) {
       const isSelf = this.escort?.name === name && this.escort.escort.way === "eyes";
-      const isNew = guest.turn(now_ms, isSelf && this.escort?.escort.isThere(now_ms) === true);
+      const isNew = guest.turn(now_ms, isSelf && this.escort?.escort.isThere(now_ms) ? null : this.world.eye);
       if (isNew && guest === this.mine) this.posesDrawn += 1;
       moving ||= isNew || guest.walk.isHeard(now_ms);
     }

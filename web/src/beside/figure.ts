@@ -53,6 +53,8 @@ const BEACON_PX = 128;
 /** Share of the picture's height, and how high over the eyes its tip is. */
 const BEACON = 0.045;
 const BEACON_UP_M = 0.45;
+/** Who is nearer is seen without. */
+const BEACON_FROM_M = 14;
 /** Before a picture has told the lens. */
 const USUAL = { right: 0.55, down: 0.41 };
 
@@ -91,11 +93,12 @@ export class Figure {
     this.sight.add(new Mesh(faces, this.sightPaint), new LineSegments(edges, this.edgePaint));
   }
 
-  /** Stand where the walker is; `isSelf` is for the eye that looks out of it, which sees nothing of it. */
-  show(walker: Shown, isSelf: boolean): void {
+  /** Stand where the walker is, so far from the eye; null for the eye that looks out of it, which sees nothing of it. */
+  show(walker: Shown, far_m: number | null): void {
     const [e, n, u] = walker.p_site_body_m;
     const [w, x, y, z] = walker.wxyz_site_body;
-    this.group.visible = !isSelf;
+    this.group.visible = far_m !== null;
+    this.beacon.visible = far_m !== null && far_m > BEACON_FROM_M;
     this.group.position.set(e, n, u);
     this.body.position.z = this.ring.position.z = -this.eyeHeight_m;
     this.ring.position.z += LIFT_M;

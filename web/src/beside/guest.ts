@@ -1,7 +1,9 @@
 /** One walker in the square: what its walk tells, drawn. */
 
 import type { Group } from "three";
+import type { Eye } from "../browse/eye";
 import type { Session } from "../protocol";
+import { length, minus } from "./between";
 import { Figure } from "./figure";
 import type { Shown } from "./poses";
 import { Ribbon } from "./ribbon";
@@ -33,11 +35,15 @@ export class Guest {
     });
   }
 
-  /** Be where the walker is in the next picture; return whether that is another place or time than in the last one. */
-  turn(now_ms: number, isSelf: boolean): boolean {
+  /**
+   * Be where the walker is in the next picture, seen from `eye`, or out of their own eyes for null; return whether that is
+   * another moment than in the last one.
+   */
+  turn(now_ms: number, eye: Eye | null): boolean {
     const before_ns = this.shown?.t_ns;
     this.shown = this.walk.poses.at(now_ms);
-    if (this.shown) this.figure.show(this.shown, isSelf);
+    const { shown } = this;
+    if (shown) this.figure.show(shown, eye && length(minus(eye.place_site_m, shown.p_site_body_m)));
     return this.shown !== null && this.shown.t_ns !== before_ns;
   }
 

@@ -1,6 +1,7 @@
 /** "Walking now": who walks, how surely, who else watches, and the ways to be with them. DOM only. */
 
 import { say } from "../language/speech";
+import type { Session } from "../protocol";
 import { metresText, motionColour, motionWords } from "../words";
 import type { Way } from "./gaze";
 import type { Guest } from "./guest";
@@ -21,6 +22,7 @@ interface Row {
   readonly item: HTMLLIElement;
   readonly name: HTMLElement;
   readonly detail: HTMLElement;
+  readonly doubt: HTMLElement;
   readonly buttons: ReadonlyMap<Way, HTMLButtonElement>;
 }
 
@@ -73,7 +75,7 @@ export class Panel {
     }
     for (const { walk } of guests) {
       const row = this.rows.get(walk.name) ?? this.make(walk.name);
-      row.name.textContent = walk.session.title ?? walk.session.log ?? walk.name;
+      row.name.textContent = nameOf(walk.session);
       for (const [way, button] of row.buttons) {
         const isOn = escort?.name === walk.name && escort.way === way;
         button.setAttribute("aria-pressed", String(isOn));
@@ -92,17 +94,14 @@ export class Panel {
     for (const guest of guests) {
       const row = this.rows.get(guest.walk.name);
       if (!row) continue;
-      row.detail.textContent = wordsOf(guest, now_ms);
+      [row.detail.textContent, row.doubt.textContent] = wordsOf(guest, now_ms);
       row.item.style.setProperty("--motion", motionColour(guest.shown?.told.motionModel ?? null));
     }
   }
 
   private make(name: string): Row {
-    const [item, title, detail] = [
-      document.createElement("li"),
-      document.createElement("strong"),
-      document.createElement("p"),
-    ];
+    const [item, title] = [document.createElement("li"), document.createElement("strong")];
+    const [detail, doubt] = [document.createElement("p"), document.createElement("p")];
     const buttons = new Map<Way, HTMLButtonElement>();
     const ways = document.createElement("div");
     for (const way of ["follow", "eyes"] as const) {
@@ -113,10 +112,11 @@ export class Panel {
       buttons.set(way, button);
       ways.append(button);
     }
-    detail.className = "quiet";
-    item.append(title, detail, ways);
+    detail.className = "how quiet";
+    doubt.className = "quiet";
+    item.append(title, detail, doubt, ways);
     this.list.append(item);
-    const row = { item, name: title, detail, buttons };
+    const row = { item, name: title, detail, doubt, buttons };
     this.rows.set(name, row);
     return row;
   }
@@ -124,14 +124,20 @@ export class Panel {
 
 const WORDS = { follow: "beside.follow", eyes: "beside.eyes" } as const;
 
-function wordsOf({ walk, shown }: Guest, now_ms: number): string {
-  if (walk.connection !== "open") return say("beside.lost");
-  if (shown === null) return say("beside.waiting");
+/** A recording is not taken for somebody who walks there now. */
+function nameOf({ kind, title, log, name }: Session): string {
+  return kind === "live" ? (title ?? name) : say("beside.recording", { name: title ?? log ?? name });
+}
+
+/** Return how a walker is, and how surely they are there. */
+function wordsOf({ walk, shown }: Guest, now_ms: number): readonly [string, string] {
+  if (walk.connection !== "open") return [say("beside.lost"), ""];
+  if (shown === null) return [say("beside.waiting"), ""];
   const { playback } = walk.session;
-  if (playback !== null && !playback.playing) return say("beside.paused");
-  if (!walk.isHeard(now_ms)) return say("beside.silent");
+  if (playback !== null && !playback.playing) return [say("beside.paused"), ""];
+  if (!walk.isHeard(now_ms)) return [say("beside.silent"), ""];
   const [east_m2 = 0, north_m2 = 0] = shown.told.variance;
-  const far = metresText(Math.sqrt(Math.max(east_m2, north_m2)));
-  if (shown.told.motionModel === null) return say("beside.within", { far });
-  return say("beside.how", { motion: motionWords(shown.told.motionModel, walk.session.estimator), far });
+  const far = say("beside.within", { far: metresText(Math.sqrt(Math.max(east_m2, north_m2))) });
+  const { motionModel } = shown.told;
+  return motionModel === null ? [far, ""] : [motionWords(motionModel, walk.session.estimator), far];
 }
