@@ -4,7 +4,8 @@
 
 Frames are 1280 x 720 JPEGs at 30 Hz to 40 viewers that acknowledge each, with one more that reads nothing and one that reads at
 64 kbit/s; poses go to 1,000 viewers at 30 Hz. The server side is what its own `/metrics` says, the viewers' side is by the one
-clock of the machine. Viewers are as thin as Python allows, and still they share the server's cores.
+clock of the machine. Viewers are as thin as Python allows, and still they share the server's cores. The rivals are in
+`fanout_rivals.py`; of NATS the rig's and the viewers' connections are its own.
 """
 
 import argparse
@@ -31,6 +32,8 @@ POSE_VIEWERS: Final = 1000
 FRAME_TARGET_S: Final = 0.015
 RATE_TARGET_HZ: Final = 29.0
 POSE_TARGET_S: Final = 0.100
+#: Ours, and those beside it.
+SERVERS: Final = {"serve": "Agora", "plain": "FastAPI loop", "nats": "NATS WebSocket", "viser": "viser alone"}
 #: Viewers come while the rig pushes already; what is measured begins after them.
 _SETTLE_S: Final = 3.0
 _SLOW_BYTES: Final = 800
@@ -48,38 +51,40 @@ class Figures:
     """From the rig's sending to a viewer's having it, over all messages of all viewers that read."""
     least_hz: float
     """Messages that the worst-off viewer had."""
-    cpu_us: float | None
-    """Of the server, for each message to each viewer, all that the server does beside it included."""
+    cpu_us: float
+    """Of the server, for each message that a viewer had, all that the server does beside it included."""
 
 
 def measure(what: str, seconds: float, server: str = "serve") -> Figures:
-    """Run server, rig and viewers; `what` is frames or poses."""
+    """Run server, rig and viewers; `what` is frames or poses, `server` one of `SERVERS`."""
     with ExitStack() as stack:
         serving = stack.enter_context(_process(server))
         told = json.loads(_line(serving))
         url, token = told["url"], told["token"]
-        stack.enter_context(_process("push", what, url, token, str(seconds + 60.0)))
-        while not httpx.get(f"{url}api/sessions", trust_env=False).json()["sessions"]:
+        if server != "viser":  # which has no rigs: whoever has it sets the pose in it
+            rig = "push-nats" if server == "nats" else "push"
+            stack.enter_context(_process(rig, what, url, token, str(seconds + 60.0)))
+        while server in ("serve", "plain") and not httpx.get(f"{url}api/sessions", trust_env=False).json()["sessions"]:
             sleep(0.05)
-        watching = stack.enter_context(_process("watch", what, url, str(seconds)))
+        watching = stack.enter_context(_process("watch", what, url, str(seconds), server))
         _line(watching)  # all are there, and it begins
+        cpu_s = _cpu_s(told["pid"])
         before = _page(url) if server == "serve" else ""
         seen = json.loads(_line(watching))
+        cpu_s = _cpu_s(told["pid"]) - cpu_s
         after = _page(url) if server == "serve" else ""
-    if not after:
-        return Figures(None, seen["p99_s"], seen["least_hz"], None)
-    sent = _value(after, f"agora_{what}_sent_total") - _value(before, f"agora_{what}_sent_total")
-    cpu_s = _value(after, "process_cpu_seconds_total") - _value(before, "process_cpu_seconds_total")
-    p95_s = _quantile(before, after, f"agora_{what.removesuffix('s')}_fanout_seconds", 0.95)
-    return Figures(p95_s, seen["p99_s"], seen["least_hz"], 1e6 * cpu_s / max(1.0, sent))
+    p95_s = _quantile(before, after, f"agora_{what.removesuffix('s')}_fanout_seconds", 0.95) if after else None
+    return Figures(p95_s, seen["p99_s"], seen["least_hz"], 1e6 * cpu_s / max(1.0, seen["messages"]))
+
+
+def _cpu_s(pid: int) -> float:
+    """Return the processor time that a process has taken."""
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(") ")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def _page(url: str) -> str:
     return httpx.get(f"{url}metrics", trust_env=False, timeout=30.0).text
-
-
-def _value(page: str, name: str) -> float:
-    return sum(float(line.rsplit(" ", 1)[1]) for line in page.splitlines() if line.split("{")[0].split(" ")[0] == name)
 
 
 def _quantile(before: str, after: str, family: str, share: float) -> float:
@@ -184,7 +189,7 @@ def _until_killed(app: Any, token: str) -> None:
     from server.web_server import WebServer
 
     with WebServer(app) as server:
-        _say({"url": server.url, "token": token})
+        _say({"url": server.url, "token": token, "pid": os.getpid()})
         sys.stdin.read()
 
 
@@ -224,8 +229,11 @@ def _jpeg() -> bytes:
 # -- the viewers' process ---------------------------------------------------------------------------------------------
 
 
-class _Viewer(asyncio.BufferedProtocol):
+class Viewer(asyncio.BufferedProtocol):
     """Reads a WebSocket's frames and no more of them than their beginnings; acknowledges pictures."""
+
+    head_bytes = 32
+    """So much of a message is looked at."""
 
     def __init__(self, port: int, slow: bool) -> None:
         self._port, self._slow = port, slow
@@ -233,15 +241,27 @@ class _Viewer(asyncio.BufferedProtocol):
         self._waiting = bytearray()
         self._open = False
         self.delays_ns: list[int] = []
+        self.messages = 0
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         assert isinstance(transport, asyncio.Transport)
         self.transport = transport
+        self.ask("/ws/view/walk")
+
+    def ask(self, path: str, more: str = "") -> None:
+        """Ask for a WebSocket; `more` is header lines."""
         key = b64encode(os.urandom(16)).decode()
-        transport.write(
-            f"GET /ws/view/walk HTTP/1.1\r\nHost: 127.0.0.1:{self._port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+        self.transport.write(
+            f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{self._port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n{more}"
             f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n\r\n".encode()
         )
+
+    def opened(self) -> None:
+        """Say what is to be said first."""
+
+    def say(self, data: bytes) -> None:
+        """Send a short text message."""
+        self.transport.write(bytes((0x81, 0x80 | len(data), 0, 0, 0, 0)) + data)  # masked with zeros
 
     def get_buffer(self, sizehint: int) -> bytearray:
         return self._room
@@ -258,6 +278,7 @@ class _Viewer(asyncio.BufferedProtocol):
             assert self._waiting.startswith(b"HTTP/1.1 101"), bytes(self._waiting[:200])
             self._open = True
             del self._waiting[: end + 4]
+            self.opened()
         while self._take():
             pass
 
@@ -274,24 +295,28 @@ class _Viewer(asyncio.BufferedProtocol):
         if len(data) < begin + length:
             return False
         if data[0] & 15 == 2:
-            self._note(bytes(data[begin : begin + 32]))
+            self.note(bytes(data[begin : begin + min(length, self.head_bytes)]))
         del data[: begin + length]
         return True
 
-    def _note(self, head: bytes) -> None:
+    def note(self, head: bytes) -> None:
+        """Take note of a message's coming."""
         is_frame = head.startswith(b"AGF1")
         sent_ns = int.from_bytes(head[24:32] if is_frame else head[16:24], "little")
         self.delays_ns.append(monotonic_ns() - sent_ns)
+        self.messages += 1
         if is_frame:
-            text = b'{"type":"ack","frame_id":%d}' % int.from_bytes(head[8:12], "little")
-            self.transport.write(bytes((0x81, 0x80 | len(text), 0, 0, 0, 0)) + text)  # masked with zeros
+            self.say(b'{"type":"ack","frame_id":%d}' % int.from_bytes(head[8:12], "little"))
 
 
-async def _watch(what: str, url: str, seconds: float) -> dict[str, float]:
+async def _watch(what: str, url: str, seconds: float, server: str) -> dict[str, float]:
+    from tests.benchmarks.fanout_rivals import VIEWERS
+
+    kind = VIEWERS.get(server, Viewer)
     loop, port = asyncio.get_running_loop(), int(url.rstrip("/").rpartition(":")[2])
 
-    async def viewer(*, slow: bool = False) -> _Viewer:
-        made = await loop.create_connection(lambda: _Viewer(port, slow), "127.0.0.1", port)
+    async def viewer(*, slow: bool = False) -> Viewer:
+        made = await loop.create_connection(lambda: kind(port, slow), "127.0.0.1", port)
         return made[1]
 
     watching = [await viewer() for _ in range(FRAME_VIEWERS if what == "frames" else POSE_VIEWERS)]
@@ -301,41 +326,52 @@ async def _watch(what: str, url: str, seconds: float) -> dict[str, float]:
     await asyncio.sleep(_SETTLE_S)
     for one in watching:
         one.delays_ns.clear()
+        one.messages = 0
     _say({"viewers": len(watching)})
     began = monotonic()
     await asyncio.sleep(seconds)
     took_s = monotonic() - began
     delays = np.concatenate([np.array(one.delays_ns, dtype=np.int64) for one in watching])
-    least = min(len(one.delays_ns) for one in watching)
-    return {"p99_s": float(np.percentile(delays, 99.0)) * 1e-9 if len(delays) else 1e9, "least_hz": least / took_s}
+    least = min(one.messages for one in watching)
+    return {
+        "p99_s": float(np.percentile(delays, 99.0)) * 1e-9 if len(delays) else 1e9,
+        "least_hz": least / took_s,
+        "messages": float(sum(one.messages for one in watching)),
+    }
 
 
-def rows_of(frames: Figures, poses: Figures, plain: Figures) -> list[tuple[str, float, str, str, float]]:
+def rows_of(frames: Figures, poses: Figures, rivals: dict[str, Figures]) -> list[tuple[str, float, str, str, float]]:
     """Return name, value, unit, what it is beside, and the ratio to that, of each row of `make bench`."""
     cores = f"{os.cpu_count()} cores"
     to_40, to_1000 = f"{FRAME_VIEWERS} viewers of 720p, {cores}", f"{POSE_VIEWERS} viewers of poses, {cores}"
-    p95_s, plain_s = frames.server_p95_s or 0.0, plain.viewers_p99_s
-    target_ms, pose_ms = FRAME_TARGET_S * 1e3, POSE_TARGET_S * 1e3
+    p95_s, p99_ms = frames.server_p95_s or 0.0, poses.viewers_p99_s * 1e3
     beside = f"target {RATE_TARGET_HZ:g}"
-    return [
-        (f"{to_40}: server side, p95", p95_s * 1e3, "ms", f"target {target_ms:g}", p95_s / FRAME_TARGET_S),
+    rows = [
+        (f"{to_40}: server side, p95", p95_s * 1e3, "ms", f"target {FRAME_TARGET_S * 1e3:g}", p95_s / FRAME_TARGET_S),
         (f"{to_40}: slowest reader", frames.least_hz, "Hz, more is better", beside, frames.least_hz / RATE_TARGET_HZ),
         (
             f"{to_1000}: rig to viewer, p99",
-            poses.viewers_p99_s * 1e3,
+            p99_ms,
             "ms",
-            f"target {pose_ms:g}",
-            poses.viewers_p99_s / POSE_TARGET_S,
+            f"target {POSE_TARGET_S * 1e3:g}",
+            p99_ms * 1e-3 / POSE_TARGET_S,
         ),
         (f"{to_1000}: slowest reader", poses.least_hz, "Hz, more is better", beside, poses.least_hz / RATE_TARGET_HZ),
-        (
-            f"{to_1000}: rig to viewer, p99",
-            poses.viewers_p99_s * 1e3,
-            "ms",
-            f"FastAPI loop {plain_s * 1e3:.0f}",
-            poses.viewers_p99_s / plain_s,
-        ),
     ]
+    for server, rival in rivals.items():
+        name, rival_ms = SERVERS[server], rival.viewers_p99_s * 1e3
+        theirs = f"{name}: {rival_ms:.0f} at {rival.least_hz:.1f} Hz"
+        rows += [
+            (f"{to_1000}: rig to viewer, p99", p99_ms, "ms", theirs, p99_ms / rival_ms),
+            (
+                f"{to_1000}: processor",
+                poses.cpu_us,
+                "us a pose",
+                f"{name}: {rival.cpu_us:.1f}",
+                poses.cpu_us / rival.cpu_us,
+            ),
+        ]
+    return rows
 
 
 def _say(answer: dict[str, Any]) -> None:
@@ -346,7 +382,7 @@ def _say(answer: dict[str, Any]) -> None:
 def main() -> None:
     """Play a part, or measure all and print it."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--role", choices=("serve", "plain", "push", "watch"), help=argparse.SUPPRESS)
+    parser.add_argument("--role", choices=(*SERVERS, "push", "push-nats", "watch"), help=argparse.SUPPRESS)
     parser.add_argument("--seconds", type=float, default=10.0)
     parser.add_argument("rest", nargs="*", help=argparse.SUPPRESS)
     options = parser.parse_args()
@@ -359,13 +395,17 @@ def main() -> None:
     elif options.role == "push":
         what, url, token, seconds = options.rest
         _push(what, url, token, float(seconds))
+    elif options.role in ("nats", "viser", "push-nats"):
+        from tests.benchmarks import fanout_rivals
+
+        fanout_rivals.play(options.role, options.rest)
     elif options.role == "watch":
-        what, url, seconds = options.rest
-        _say(asyncio.run(_watch(what, url, float(seconds))))
+        what, url, seconds, server = options.rest
+        _say(asyncio.run(_watch(what, url, float(seconds), server)))
     else:
-        for what in ("frames", "poses"):
-            _say({"what": what, "cores": os.cpu_count(), **asdict(measure(what, options.seconds))})
-        _say({"what": "poses, plain FastAPI", **asdict(measure("poses", options.seconds, "plain"))})
+        for what, server in (("frames", "serve"), *(("poses", server) for server in SERVERS)):
+            figures = measure(what, options.seconds, server)
+            _say({"what": what, "server": SERVERS[server], "cores": os.cpu_count(), **asdict(figures)})
 
 
 if __name__ == "__main__":

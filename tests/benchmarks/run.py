@@ -23,7 +23,7 @@ from vqf import VQF
 
 from tests.benchmarks import ar_page, beside, failover
 from tests.benchmarks.endurance import endure
-from tests.benchmarks.fanout import measure, rows_of
+from tests.benchmarks.fanout import SERVERS, measure, rows_of
 from tracker.attitude import Madgwick
 from tracker.cycle import Cycle, CycleFilter
 from tracker.estimators import ESTIMATORS, SELECTORS, missing_sensors
@@ -261,9 +261,10 @@ def simulated_log(seconds: float = 120.0) -> Log:
 
 
 def fanout_rows() -> list[Row]:
-    """One rig to many viewers over loopback, with one that stalls and one on a slow line, beside a plain loop of sockets."""
-    frames, poses, plain = (measure(*what) for what in (("frames", 8.0), ("poses", 8.0), ("poses", 8.0, "plain")))
-    return [Row(*fields) for fields in rows_of(frames, poses, plain)]
+    """One rig to many viewers over loopback, with one that stalls and one on a slow line, beside others that could do it."""
+    frames, poses = (measure(what, 8.0) for what in ("frames", "poses"))
+    rivals = {server: measure("poses", 8.0, server) for server in SERVERS if server != "serve"}
+    return [Row(*fields) for fields in rows_of(frames, poses, rivals)]
 
 
 def failover_rows() -> list[Row]:
