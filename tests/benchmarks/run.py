@@ -21,7 +21,7 @@ from rich.progress import track
 from rich.table import Table
 from vqf import VQF
 
-from tests.benchmarks import ar_page, beside, failover
+from tests.benchmarks import ar_page, beside, failover, siege
 from tests.benchmarks.endurance import endure
 from tests.benchmarks.fanout import SERVERS, measure, rows_of
 from tracker.attitude import Madgwick
@@ -272,6 +272,11 @@ def failover_rows() -> list[Row]:
     return [Row(*fields) for fields in failover.rows_of(failover.measure(5.0))]
 
 
+def siege_rows() -> list[Row]:
+    """A rig and its viewer while others abuse their server."""
+    return [Row(*fields) for fields in siege.rows_of(siege.measure())]
+
+
 def camera_works() -> list[Callable[[], list[Row]]]:
     """What needs pictures; nothing where no walk with a camera is at hand."""
     path = next((path for path in CAMERA_LOGS if path.is_file()), None)
@@ -298,6 +303,7 @@ def main() -> None:
         fanout_rows,
         beside_rows,
         failover_rows,
+        siege_rows,
         lambda: replay_rows(simulated_log(), "without camera, 250 Hz", 20.0, repeats=3),
     ]
     works += camera_works()
