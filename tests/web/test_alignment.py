@@ -52,7 +52,10 @@ def go_to(ar: ArPage, position_s: float) -> int:
     """Go to a place of the walk; return the picture that is drawn there."""
     ar.seek(position_s)
     before = int(position_s * 10.0) - 1
-    ar.until(f"Math.abs(agora.stats().lastFrameId - {before}) <= 1")
+    # a place further on shows its picture first, and its pose when it is found
+    ar.until(
+        f"Math.abs(agora.stats().lastFrameId - {before}) <= 1 && agora.pose()?.frameId === agora.stats().lastFrameId"
+    )
     frame_id: int = ar.stats()["lastFrameId"]
     return frame_id
 

@@ -1,4 +1,4 @@
-"""Every page for everyone: what axe-core finds on each page, in its states, its themes and its languages."""
+"""Every page for everyone, in its states, themes and languages: what axe-core finds, and what a finger would miss."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -20,6 +20,15 @@ THEMES = ("plain", "glare")
 FIND = """() => axe.run(document, { resultTypes: ["violations"] }).then(({ violations }) =>
     violations.filter(({ impact }) => impact === "serious" || impact === "critical").map(({ id, nodes }) =>
         `${id}: ${nodes.map(({ html, failureSummary }) => html.slice(0, 160) + " " + failureSummary).join(" | ")}`))"""
+
+
+SMALL = """() => [...document.querySelectorAll("button, select, a[href], summary, input, textarea")]
+    .filter((one) => one.checkVisibility({ visibilityProperty: true }) && !one.matches(".unseen, .skip, p a"))
+    .map((one) => [one, (/checkbox|radio/.test(one.type) && one.closest("label")) || one])
+    .map(([one, target]) => [one.id || one.className || one.tagName, target.getBoundingClientRect()])
+    .filter(([, { width, height }]) => Math.min(width, height) < 43.5)
+    .map(([name, { width, height }]) => `${name}: ${width} x ${height}`)"""
+"""Controls that a finger would miss; links within a sentence may be as high as it is (WCAG 2.5.5)."""
 
 
 @dataclass(frozen=True)
@@ -91,6 +100,7 @@ def test_nothing_serious_stands_in_anybodys_way(shown: tuple[Kind, ArPage]) -> N
     found = {}
     for state in kind.states:
         page.ask(state)
+        found[state, "targets"] = page.ask(SMALL)
         for theme in THEMES:
             page.ask("theme => { document.documentElement.dataset.theme = theme; }", theme)
             found[state, theme] = findings(page)

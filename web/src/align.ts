@@ -11,6 +11,7 @@ import {
   tapSigma,
 } from "./alignment";
 import type { Doubt } from "./certainty";
+import { Crosshair } from "./crosshair";
 import { element, tell } from "./dom";
 import type { Matrix4, Vector3 } from "./frames";
 import { headingOf } from "./frames";
@@ -79,11 +80,13 @@ export class Align {
   private readonly stand = element("stand", HTMLElement);
   private readonly mark = element("mark", HTMLElement);
   private readonly button = element("align", HTMLButtonElement);
+  private readonly crosshair: Crosshair;
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
     private readonly host: Host,
   ) {
+    this.crosshair = new Crosshair(canvas, this.mark, (at) => this.tapAt(at));
     this.button.onclick = () => this.turn(!this.on);
     element("aligned", HTMLButtonElement).onclick = () => this.turn(false);
     element("here", HTMLButtonElement).onclick = () => this.offerPlan();
@@ -109,7 +112,7 @@ export class Align {
 
   /** Whether the picture is held: somebody points at something in it. */
   get holds(): boolean {
-    return this.down !== null || this.tap !== null;
+    return this.down !== null || this.tap !== null || this.crosshair.isMoving;
   }
 
   /** Take what the site has to point at. */
@@ -145,6 +148,12 @@ export class Align {
     document.body.classList.toggle("aligning", on);
     this.panel.hidden = !on;
     this.button.setAttribute("aria-pressed", String(on));
+    this.crosshair.isOn = on;
+    this.canvas.tabIndex = on ? 0 : -1;
+    this.canvas.setAttribute("role", on ? "application" : "img");
+    this.canvas.setAttribute("aria-label", say(on ? "align.canvas" : "ar.canvas"));
+    if (on) this.canvas.focus({ preventScroll: true });
+    else this.button.focus();
     if (!on) this.bearings_rad = [];
     this.rest();
   }
@@ -152,6 +161,7 @@ export class Align {
   /** Back to where a landmark may be tapped. */
   private rest(): void {
     this.down = this.tap = null;
+    this.crosshair.rest();
     this.mark.hidden = true;
     this.stand.hidden = true;
     this.choices.replaceChildren();
@@ -189,6 +199,16 @@ export class Align {
     const sigma_px = tapSigma(event.pointerType, this.pixelsOf(down.frame));
     if (down.dragged) this.drop(down.frame, down.pixel, pixel, sigma_px);
     else this.offer(down.frame, down.pixel, sigma_px);
+  }
+
+  /** Take a point of the window for a tap of somebody who points with keys. */
+  private tapAt([clientX, clientY]: Pair): void {
+    const { frame } = this.host;
+    const pixel = frame && this.pixelOf({ clientX, clientY }, frame);
+    this.rest();
+    if (frame === null || pixel === null) return;
+    this.offer(frame, pixel, tapSigma("mouse", this.pixelsOf(frame)));
+    this.choices.querySelector("button")?.focus();
   }
 
   /** Say that what was drawn at one pixel belongs to another. */
@@ -245,6 +265,7 @@ export class Align {
     const asked: Alignment = { kind: "tap", frame_id: frame.frameId, place_px: pixel, sigma_px, point_site_m };
     if (this.send(asked, say("align.noted", { name }))) this.pointedAt(point_site_m, frame);
     this.rest();
+    this.canvas.focus({ preventScroll: true });
   }
 
   private pointedAt([e, n]: Vector3, { pose }: FrameMessage): void {
@@ -292,7 +313,7 @@ export class Align {
     return { width_px: lens.width_px, height_px: lens.height_px, quarterTurns };
   }
 
-  private pixelOf({ clientX, clientY }: PointerEvent, frame: FrameMessage): Pair | null {
+  private pixelOf({ clientX, clientY }: Pick<PointerEvent, "clientX" | "clientY">, frame: FrameMessage): Pair | null {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     return pixelAt(this.layout(frame), this.aspect, [(clientX - left) / width, (clientY - top) / height]);
   }

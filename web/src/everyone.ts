@@ -49,5 +49,15 @@ function keptLine(): HTMLElement {
   return line;
 }
 
+/** Let those who come by keys go past what stands first. */
+function offerSkipping(): void {
+  for (const link of document.querySelectorAll<HTMLAnchorElement>("a.skip"))
+    link.onclick = () => {
+      document.querySelector(link.hash)?.querySelector<HTMLElement>("button, input, select")?.focus();
+      return false; // the start page's address tells a view
+    };
+}
+
+offerSkipping();
 const switches = [languageMenu(), themeSwitch(), keptLine()];
 document.querySelector(".everyone")?.replaceChildren(...switches);

@@ -7,6 +7,14 @@ import { conePath, type Frame, frameOf, middleOf, outlinePath, type Place, withi
 const SVG = "http://www.w3.org/2000/svg";
 /** A doubt larger than this is drawn no larger: it would cover the plan. */
 const LARGEST_DOUBT_M = 60;
+/** So many presses of an arrow key go from one side of the plan to the other. */
+const STEPS = 40;
+const WAYS: Readonly<Record<string, Place>> = {
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowUp: [0, 1],
+  ArrowDown: [0, -1],
+};
 
 /** Called with a place that is tapped, how many metres a pixel of the page is, and with what it was tapped. */
 export type Chosen = (place: Place, metresPerPixel: number, pointerType: string) => void;
@@ -14,6 +22,7 @@ export type Chosen = (place: Place, metresPerPixel: number, pointerType: string)
 export class SiteMap {
   readonly frame: Frame;
   private readonly svg: SVGSVGElement;
+  private visitor: Place | null = null;
   private readonly cone = make("path", "cone");
   private readonly doubt = make("circle", "doubt");
   private readonly dot = make("circle", "dot");
@@ -38,6 +47,31 @@ export class SiteMap {
       const [place, beside] = [this.placeAt(clientX, clientY), this.placeAt(clientX + 1, clientY)];
       chosen(place, Math.hypot(beside[0] - place[0], beside[1] - place[1]), pointerType);
     });
+    this.offerKeys(chosen);
+  }
+
+  /** Let the arrow keys move a cross over the plan, and Enter choose. */
+  private offerKeys(chosen: Chosen): void {
+    const cross = make("path", "cross");
+    let at: Place | null = null;
+    this.svg.tabIndex = 0;
+    this.svg.setAttribute("role", "application");
+    this.svg.setAttribute("aria-label", say("plan.keys"));
+    this.svg.addEventListener("keydown", (event) => {
+      const { width } = this.svg.viewBox.baseVal;
+      const way = WAYS[event.key];
+      const [e, n] = at ?? this.visitor ?? this.middle;
+      if (way) at = within([e + (way[0] * width) / STEPS, n + (way[1] * width) / STEPS], this.frame);
+      else if (event.key === "Enter" && at !== null) chosen(at, width / Math.max(1, this.svg.clientWidth), "mouse");
+      else return;
+      event.preventDefault();
+      event.stopPropagation();
+      if (at === null) return;
+      const arm = width / STEPS;
+      cross.setAttribute("d", `M${at[0] - arm},${-at[1]}h${2 * arm}M${at[0]},${-at[1] - arm}v${2 * arm}`);
+      this.svg.append(cross);
+    });
+    this.svg.addEventListener("blur", () => cross.remove());
   }
 
   /** Whether a place is on the plan. */
@@ -62,6 +96,7 @@ export class SiteMap {
 
   /** Show the visitor; the heading is null where it is not known. */
   show(place: Place | null, heading_rad: number | null, half_rad: number, doubt: Doubt | null): void {
+    this.visitor = place;
     const hidden = place === null;
     for (const part of [this.cone, this.doubt, this.dot]) part.toggleAttribute("hidden", hidden);
     if (place === null) return;

@@ -8,6 +8,7 @@ export const en = {
   language: "Language",
   "language.name": "English",
   site: "The ancient square",
+  skip: "Skip to the controls",
   "theme.glare": "High contrast, for the sun",
   "offline.kept": "Kept on this device: opens without a network, too.",
 
@@ -119,6 +120,7 @@ export const en = {
 
   "wayfinder.label": "The way to the square",
   "plan.label": "Plan of the site, north up, with your place",
+  "plan.keys": "Plan of the site, north up, with your place: arrow keys move a cross, Enter chooses the place",
   "way.to_the": "The middle of the square is {far} to the {point}.",
   "way.ahead": "The middle of the square is {far} straight ahead.",
   "way.ahead_left": "The middle of the square is {far} ahead, to your left.",
@@ -130,6 +132,7 @@ export const en = {
   "way.behind": "The middle of the square is {far} behind you.",
 
   "align.label": "Alignment",
+  "align.canvas": "Camera picture: arrow keys move a mark, Enter points at what lies under it",
   "align.here": "I stand here",
   "align.take_back": "Take back",
   "align.done": "Done",

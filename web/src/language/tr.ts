@@ -6,6 +6,7 @@ export const tr: Catalogue = {
   language: "Dil",
   "language.name": "Türkçe",
   site: "Antik meydan",
+  skip: "Denetimlere geç",
   "theme.glare": "Güneşte okunur, yüksek karşıtlık",
   "offline.kept": "Bu aygıtta saklandı: ağ olmadan da açılır.",
 
@@ -112,6 +113,7 @@ export const tr: Catalogue = {
 
   "wayfinder.label": "Meydana giden yol",
   "plan.label": "Alanın planı, kuzey yukarıda, yeriniz işaretli",
+  "plan.keys": "Alanın planı, kuzey yukarıda, yeriniz işaretli: ok tuşları artıyı taşır, Enter yeri seçer",
   "way.to_the": "Meydanın ortası {far} uzakta, yönü {point}.",
   "way.ahead": "Meydanın ortası {far} ileride, tam karşınızda.",
   "way.ahead_left": "Meydanın ortası {far} ileride, solunuzda.",
@@ -123,6 +125,7 @@ export const tr: Catalogue = {
   "way.behind": "Meydanın ortası {far} uzakta, arkanızda.",
 
   "align.label": "Hizalama",
+  "align.canvas": "Kamera görüntüsü: ok tuşları işareti taşır, Enter altındakini gösterir",
   "align.here": "Buradayım",
   "align.take_back": "Geri al",
   "align.done": "Tamam",

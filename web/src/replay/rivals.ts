@@ -166,7 +166,9 @@ export class Rivals {
     radio.disabled = refused !== null;
     radio.setAttribute("aria-label", say("replay.rivals.use", { name: estimatorWords(name).join(", ") }));
     radio.onchange = () => this.use(name);
-    place.append(radio);
+    const target = document.createElement("label");
+    target.append(radio);
+    place.append(target);
     return place;
   }
 }
