@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from server.sessions import Session
+    from server.session import Session
 
 
 class Listener(Protocol):

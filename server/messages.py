@@ -98,8 +98,8 @@ class ControlRequest(Struct, frozen=True, tag_field="type", tag="control"):
     request_id: Annotated[str, Meta(min_length=1, max_length=64)]
     action: Action
     value: bool | float | Name | Alignment | None = None
-    """Seconds for `seek`, a factor for `speed`, a name for `estimator`, an alignment for `align`, whether to for `loop` and `share`,
-    `KEY=VALUE` for `settings`, and an empty text for the usual ones again."""
+    """Seconds for `seek`, a factor for `speed`, a name for `estimator`, an alignment for `align`, whether to for `loop` and for
+    `share`, `KEY=VALUE` for `settings`, and an empty text for the usual ones again."""
 
 
 class ControlReply(Struct, frozen=True, tag_field="type", tag="reply"):

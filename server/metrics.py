@@ -8,7 +8,8 @@ from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Histo
 from prometheus_client.metrics_core import Metric
 from prometheus_client.registry import Collector
 
-from server.sessions import Session, Sessions
+from server.session import Session
+from server.sessions import Sessions
 from server.traffic import Durations
 
 _COUNTERS: Final = (

@@ -22,7 +22,8 @@ from websockets.typing import Subprotocol
 from server.errors import LinkRefused, MalformedMessage
 from server.messages import ControlReply, ControlRequest, encode, parse_control
 from server.outbox import Outbox
-from server.sessions import ENDED, REPLACED
+from server.session import REPLACED
+from server.sessions import ENDED
 from server.wire import SUBPROTOCOL, FrameMeta, PoseUpdate, encode_frame, encode_pose
 from tracker.errors import InputError, MissingSensor
 from tracker.estimator import NO_MOTION_MODEL, Pose

@@ -13,7 +13,8 @@ from server.access import Access, known, needs
 from server.cluster.relay import Relay
 from server.grants import Grant
 from server.metrics import Metrics
-from server.sessions import NAME, Session, Sessions
+from server.session import Session
+from server.sessions import NAME, Sessions
 from server.wire import VERSION
 
 #: Frames flow where the newest is at most this old.

@@ -20,7 +20,8 @@ from server.grants import Grant
 from server.limits import Bucket
 from server.line import SocketLine, line_of
 from server.messages import Ack, ControlReply, Look, encode, parse_from_viewer
-from server.sessions import Session, Sessions
+from server.session import Session
+from server.sessions import Sessions
 from server.wire import SUBPROTOCOL
 
 _logger = logging.getLogger(__name__)

@@ -23,7 +23,8 @@ from msgspec.inspect import (
 
 from server import messages, sockets
 from server.docstrings import field_docstrings
-from server.sessions import ENDED, REPLACED, RESTART
+from server.session import REPLACED
+from server.sessions import ENDED, RESTART
 from server.wire import FRAME_HEADER_BYTES, MAX_FRAME_BYTES, POSE_BYTES, SUBPROTOCOL, VERSION
 
 PLACE: Final = Path(__file__).parents[1] / "web" / "src" / "messages.gen.ts"

@@ -21,7 +21,8 @@ from server.cluster.mirrored import AnswerLine, Mirrored
 from server.errors import MalformedMessage, UnknownSession
 from server.fanout import Mailbox
 from server.messages import SessionFields, parse_control
-from server.sessions import ENDED, Session, Sessions
+from server.session import Session
+from server.sessions import ENDED, Sessions
 
 _logger = logging.getLogger(__name__)
 

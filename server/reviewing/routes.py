@@ -15,7 +15,8 @@ from server.reviewing.exported import DEFAULT_MB, LARGEST_MB, SMALLEST_MB, Expor
 from server.reviewing.jobs import MEDIA_TYPES, CourseJob, Job, PackJob, ThumbnailsJob, TimelineJob
 from server.reviewing.pack import unpacked
 from server.reviewing.reviews import Reviews
-from server.sessions import Session, Sessions
+from server.session import Session
+from server.sessions import Sessions
 from tracker.errors import InputError
 from tracker.estimators import check_name
 

@@ -7,7 +7,7 @@ import pytest
 
 from server.fanout import Mailbox
 from server.messages import Hello, SensorHealth, SessionNews
-from server.sessions import Session
+from server.session import Session
 from server.typescript import PLACE, _type, typescript
 
 

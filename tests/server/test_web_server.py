@@ -16,7 +16,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from server.access import Access
 from server.app import create_app
 from server.errors import AddressUnavailable, PortInUse
-from server.sessions import REPLACED
+from server.session import REPLACED
 from server.web_server import WebServer
 from server.wire import decode_frame, encode_frame, encode_pose
 from tests.server.serving import HELD_S, bytes_of, rig, serving, text_of, token, until, until_closed, viewer

@@ -17,7 +17,8 @@ from server.fanout import Mailbox
 from server.grants import Role
 from server.messages import ControlRequest
 from server.privacy import without_picture
-from server.sessions import ENDED, REPLACED, Session, Sessions
+from server.session import REPLACED, Session
+from server.sessions import ENDED, Sessions
 from server.wire import decode_frame, encode_frame, encode_pose, is_frame
 from tests.server.cluster.nodes import nodes
 from tests.server.lines import Wire

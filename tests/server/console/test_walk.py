@@ -11,7 +11,7 @@ from server.console.status import plain, rejected_of, status_of
 from server.console.walk import Walk
 from server.errors import MalformedMessage
 from server.messages import Company, ControlReply, Figures, Update, encode
-from server.sessions import Session
+from server.session import Session
 from server.wire import FrameMeta, encode_frame
 from tests.server.wire_examples import TINY_JPEG, example_frame
 
