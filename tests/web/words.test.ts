@@ -12,6 +12,7 @@ import {
   type Situation,
   sentenceFor,
 } from "../../web/src/words";
+import colours from "../golden/motion_colours.json";
 import { forSeeds } from "./random";
 
 const WELL: Situation = {
@@ -108,6 +109,12 @@ test("pictures that stay away are missed while playing, not while pausing", () =
   expect(sentenceFor({ ...WELL, sincePicture_ms: 10_000, playing: false })).toBeNull();
   expect(sentenceFor({ ...WELL, sincePicture_ms: null, playing: false })).toMatch(/[Pp]ress play/);
   expect(sentenceFor({ ...WELL, sincePicture_ms: null, kind: "live" })).toMatch(/rig/);
+});
+
+test("motion models have the console's colours", () => {
+  for (const [model, colour] of Object.entries(colours.models)) expect(motionColour(model)).toBe(colour);
+  expect(Object.keys(colours.models)).toEqual(MODELS);
+  expect(motionColour(null)).toBe(colours.none);
 });
 
 test("each of the nine motion models has words and a colour of its own; anything else has none", () => {

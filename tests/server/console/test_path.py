@@ -1,8 +1,19 @@
 """The path's pieces and their colours."""
 
+import json
+from pathlib import Path
+
 import numpy as np
 
-from server.console.path import MOTION_COLOURS, ColouredPath
+from server.console.path import MOTION_COLOURS, ColouredPath, colour_of
+
+GOLDEN = Path(__file__).parents[2] / "golden" / "motion_colours.json"
+
+
+def test_motion_models_have_the_pages_colours() -> None:
+    golden = json.loads(GOLDEN.read_text(encoding="utf-8"))
+    told = {model: f"#{bytes(colour_of(model)).hex()}" for model in (*MOTION_COLOURS, "-")}
+    assert told == golden["models"] | {"-": golden["none"]}
 
 
 def test_the_path_is_coloured_by_motion_model_and_broken_by_jumps() -> None:
