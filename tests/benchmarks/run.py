@@ -21,7 +21,7 @@ from rich.progress import track
 from rich.table import Table
 from vqf import VQF
 
-from tests.benchmarks import ar_page, beside, failover, siege
+from tests.benchmarks import ar_page, beside, failover, home_page, siege
 from tests.benchmarks.endurance import endure
 from tests.benchmarks.fanout import SERVERS, measure, rows_of
 from tracker.attitude import Madgwick
@@ -243,6 +243,22 @@ def page_rows(path: Path) -> list[Row]:
     return rows
 
 
+def home_rows() -> list[Row]:
+    """The start page over 10 Mbit/s, in software: wall time, so a busy machine is slower."""
+    rows = []
+    for opened in home_page.measure():
+        name = f"start page 1280x720, {opened.renderer}, 10 Mbit/s"
+        first_s, target_s = opened.first_picture_ms / 1e3, home_page.FIRST_PICTURE_MS / 1e3
+        size_mb, most_mb = opened.first_picture_bytes / 1e6, home_page.FIRST_PICTURE_BYTES / 1e6
+        long_ms, most_ms = opened.longest_task_ms, home_page.LONG_TASK_MS
+        rows += [
+            Row(f"{name}: first picture", first_s, "s", f"target {target_s:g} s", first_s / target_s),
+            Row(f"{name}: came until then", size_mb, "MB", f"target {most_mb:g} MB", size_mb / most_mb),
+            Row(f"{name}: longest task after it", long_ms, "ms", f"target {most_ms:g} ms", long_ms / most_ms),
+        ]
+    return rows
+
+
 def beside_rows() -> list[Row]:
     """Five start pages beside a live walk: wall time, so a busy machine is slower."""
     found = beside.measure()
@@ -302,6 +318,7 @@ def main() -> None:
         endurance_rows,
         fanout_rows,
         beside_rows,
+        home_rows,
         failover_rows,
         siege_rows,
         lambda: replay_rows(simulated_log(), "without camera, 250 Hz", 20.0, repeats=3),

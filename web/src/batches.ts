@@ -28,7 +28,24 @@ export interface Batches {
 
 /** Sort the meshes of a file into batches, everything hidden. */
 export function batched(gltf: GLTF, surfaces: Surfaces): Batches {
-  return new Sorting(gltf, surfaces).sorted();
+  const sorting = new Sorting(gltf, surfaces);
+  for (const _ of sorting.steps());
+  return sorting.sorted;
+}
+
+/** The same piece by piece: `made` is told of what each piece has brought, and waited for before the next. */
+export async function batchedInTurns(
+  gltf: GLTF,
+  surfaces: Surfaces,
+  made: (objects: readonly Object3D[]) => Promise<void>,
+): Promise<Batches> {
+  const sorting = new Sorting(gltf, surfaces);
+  let told = 0;
+  for (const count of sorting.steps()) {
+    if (count > told) await made(sorting.sorted.objects.slice(told, count));
+    told = count;
+  }
+  return sorting.sorted;
 }
 
 class Sorting {
@@ -50,7 +67,8 @@ class Sorting {
     gltf.scene.updateMatrixWorld(true);
   }
 
-  sorted(): Batches {
+  /** Sort all of it, step by step; each tells how many objects there are now. */
+  *steps(): Iterable<number> {
     for (const child of this.gltf.scene.children) {
       const [name, extras] = this.nameOf(child);
       child.traverse((mesh) => {
@@ -58,7 +76,15 @@ class Sorting {
         else if (mesh instanceof Mesh) this.sort(mesh, mesh.matrixWorld, this.thing(name, extras));
       });
     }
-    for (const [material, members] of this.plain) this.batch(material, members);
+    yield this.objects.length;
+    for (const [material, members] of this.plain) {
+      this.batch(material, members);
+      yield this.objects.length;
+    }
+  }
+
+  /** What is sorted so far. */
+  get sorted(): Batches {
     const { owners } = this;
     const find = ({ object, batchId }: Intersection): Thing | null => {
       const owner = owners.get(object);

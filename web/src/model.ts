@@ -9,10 +9,11 @@ import {
   type Object3D,
   type Raycaster,
   Scene,
+  type Texture,
   Vector3,
 } from "three";
 import type { GLTF } from "three/addons/loaders/GLTFLoader.js";
-import { type Batches, batched } from "./batches";
+import { type Batches, batched, batchedInTurns } from "./batches";
 import { EVIDENCE_COLOURS } from "./evidence";
 import { loader } from "./gltf";
 import { bestOf, levelAt } from "./levels";
@@ -43,6 +44,8 @@ export class Square {
   readonly bounds = new Box3();
   /** Called when something has come in or changed, so that it be drawn, its shadows too. */
   changed: () => void = () => undefined;
+  /** Called when something has come in that should go to the graphics card before the next does. */
+  pause: (pictures: readonly Texture[]) => Promise<void> = () => new Promise((resolve) => setTimeout(resolve));
   private readonly surfaces: Surfaces;
   private readonly light = new Sunlight();
   private readonly files: Batches[] = [];
@@ -54,6 +57,7 @@ export class Square {
   private readonly hideBackdrop: boolean;
   private readonly materials: string | null;
   private refining: Promise<void> | null = null;
+  private whole = false;
   private effort: Drawn = ALL;
 
   /** `levels` are the model's files, the finest first; the last one is in `first`. */
@@ -66,7 +70,9 @@ export class Square {
     this.hideBackdrop = groundShare < 1;
     const extras = (first.asset["extras"] ?? {}) as Readonly<Record<string, unknown>>;
     if (Array.isArray(extras["level_reach_m"])) this.reach_m = extras["level_reach_m"] as number[];
-    this.add(first, levels.length - 1);
+    const file = batched(first, this.surfaces);
+    void this.lay(file.objects);
+    this.take(file, levels.length - 1);
     this.scene.add(...this.light.objects);
     this.update(this.eye);
     this.materials = typeof extras["materials"] === "string" && levels.length > 1 ? extras["materials"] : null;
@@ -81,8 +87,16 @@ export class Square {
 
   /** Load the finer levels and the full textures; resolves when all are in, or have failed. */
   refine(): Promise<void> {
-    this.refining ??= this.loadFiner();
+    this.refining ??= this.loadFiner().then(() => {
+      this.whole = true;
+      this.changed();
+    });
     return this.refining;
+  }
+
+  /** Whether all that is finer is in, or has failed. */
+  get isWhole(): boolean {
+    return this.whole;
   }
 
   /** Choose every thing's level for an eye at this place, gltf axes; return whether anything has changed. */
@@ -199,11 +213,13 @@ export class Square {
     try {
       if (materials !== null) {
         const [base] = levels as [string];
-        await this.surfaces.refine(await loader.loadAsync(new URL(materials, new URL(base, location.href)).href));
+        const full = await loader.loadAsync(new URL(materials, new URL(base, location.href)).href);
+        await this.surfaces.refine(full, (pictures) => this.pause(pictures));
         this.changed();
       }
       for (const [level, url] of finer.reverse()) {
-        this.add(await loader.loadAsync(url), level);
+        const file = await batchedInTurns(await loader.loadAsync(url), this.surfaces, (objects) => this.lay(objects));
+        this.take(file, level);
         this.update(this.eye);
         this.changed();
       }
@@ -212,8 +228,14 @@ export class Square {
     }
   }
 
-  private add(gltf: GLTF, level: number): void {
-    const file = batched(gltf, this.surfaces);
+  /** Put what is not shown yet into the scene. */
+  private lay(objects: readonly Object3D[]): Promise<void> {
+    this.clothe(objects);
+    this.scene.add(...objects);
+    return this.pause([]);
+  }
+
+  private take(file: Batches, level: number): void {
     for (const thing of file.things) {
       if (this.hideBackdrop && thing.role === "backdrop") continue;
       this.bounds.union(thing.box);
@@ -230,8 +252,6 @@ export class Square {
       if (this.evidence) this.tint(thing);
     }
     this.files.push(file);
-    this.clothe(file.objects);
-    this.scene.add(...file.objects);
   }
 
   private clothe(objects: readonly Object3D[]): void {

@@ -1,6 +1,6 @@
 /** The materials of a square, one for each name however many files it comes in; small textures at first, full ones later. */
 
-import { type Material, MeshStandardMaterial, NoBlending, type ShaderMaterial } from "three";
+import { type Material, MeshStandardMaterial, NoBlending, type ShaderMaterial, type Texture } from "three";
 import type { GLTF } from "three/addons/loaders/GLTFLoader.js";
 import { type Common, plainOf, relook } from "./plain";
 
@@ -53,13 +53,15 @@ export class Surfaces {
     return material;
   }
 
-  /** Take the full textures from a file of materials. */
-  async refine(gltf: GLTF): Promise<void> {
+  /** Take the full textures from a file of materials, one after the other: `taken` is waited for before the next. */
+  async refine(gltf: GLTF, taken: (pictures: readonly Texture[]) => Promise<void>): Promise<void> {
     const materials = (await gltf.parser.getDependencies("material")) as Material[];
     for (const full of materials) if (full instanceof MeshStandardMaterial) this.full.set(full.name, full);
-    for (const material of this.made.values()) {
+    for (const material of [...this.made.values()]) {
       const full = this.full.get(material.name);
-      if (full) this.retouch(material, full);
+      if (!full) continue;
+      this.retouch(material, full);
+      await taken(PICTURES.flatMap((picture) => material[picture] ?? []));
     }
   }
 

@@ -20,7 +20,6 @@ export class Epochs {
   changed: () => void = () => undefined;
   private readonly squares = new Map<Epoch, Square>();
   private readonly loading = new Map<Epoch, Promise<Square>>();
-  private readonly whole = new Set<Square>();
   private readonly variants = new Map<string, string>();
   private evidence = false;
   private hour: number | null = null;
@@ -52,8 +51,7 @@ export class Epochs {
 
   /** Whether all levels of what is shown are in. */
   get isWhole(): boolean {
-    const { square } = this;
-    return square !== null && this.whole.has(square) && this.fade === null;
+    return this.square?.isWhole === true && this.fade === null;
   }
 
   get chosen(): ReadonlyMap<string, string> {
@@ -127,7 +125,8 @@ export class Epochs {
     square.showEvidence(this.evidence);
     this.squares.set(epoch, square);
     this.shine(epoch, square);
-    void square.refine().then(() => this.whole.add(square));
+    // nothing finer is asked for before there is a picture
+    void this.stage.drawn().then(() => square.refine());
     return square;
   }
 

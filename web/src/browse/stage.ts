@@ -6,6 +6,7 @@ import {
   Group,
   PerspectiveCamera,
   Raycaster,
+  type Texture,
   Vector3 as Vector,
   Vector2,
   WebGLRenderer,
@@ -40,6 +41,8 @@ interface Layer {
   stale: boolean;
   thrown: boolean;
   plain: boolean;
+  /** Whether its finest surfaces are compiled. */
+  compiled: "no" | "soon" | "yes";
 }
 
 export class Stage implements World {
@@ -52,6 +55,7 @@ export class Stage implements World {
   private readonly turns = new Set<Turn>();
   private readonly veil = new Veil();
   private readonly pace: Pace;
+  private readonly inSoftware: boolean;
   private below: Layer | null = null;
   private above: Layer | null = null;
   private share = 0;
@@ -61,6 +65,7 @@ export class Stage implements World {
   private isHurried = false;
   private fineness = 1;
   private isDressing = false;
+  private compiling = 0;
   private resting: number | null = null;
   private moved_ms = Number.NEGATIVE_INFINITY;
   private drawn_ms: number | null = null;
@@ -82,10 +87,10 @@ export class Stage implements World {
     this.renderer.info.autoReset = false;
     this.renderer.autoClear = false;
     this.renderer.debug.checkShaderErrors = import.meta.env.DEV; // to ask for errors waits for the compiler
-    const inSoftware = drawsInSoftware(this.renderer);
-    this.pace = new Pace(inSoftware);
+    this.inSoftware = drawsInSoftware(this.renderer);
+    this.pace = new Pace(this.inSoftware);
     // blurring what is behind the panels costs as much as drawing the model
-    document.body.classList.toggle("frugal", inSoftware);
+    document.body.classList.toggle("frugal", this.inSoftware);
     this.guests.matrixAutoUpdate = false;
     this.guests.matrix.set(...(T_gltf_site as Parameters<typeof this.guests.matrix.set>));
     this.explorer = new Explorer(this.camera, canvas, new Controls(canvas, stick), eyeHeight_m, () => this.ask());
@@ -93,15 +98,18 @@ export class Stage implements World {
     this.fill();
   }
 
-  /** What the last drawing cost, shadows left out. */
-  get stats(): Readonly<Record<"drawCalls" | "triangles" | "framesDrawn" | "fineness", number>> {
+  /** What the last drawing cost, shadows left out, and what the renderer holds. */
+  get stats(): Readonly<Record<string, number>> {
     const { cost, pictures, fineness } = this;
-    return { drawCalls: cost.calls, triangles: cost.triangles, framesDrawn: pictures, fineness };
+    const { geometries, textures } = this.renderer.info.memory;
+    return { drawCalls: cost.calls, triangles: cost.triangles, framesDrawn: pictures, fineness, geometries, textures };
   }
 
   /** Whether all that was asked for is drawn, as finely as it can be; what moves by itself never is. */
   get isSettled(): boolean {
-    return (this.guestsMove || (!this.asked && this.resting === null)) && !this.explorer.isFlying;
+    return (
+      (this.guestsMove || (!this.asked && this.resting === null && this.compiling === 0)) && !this.explorer.isFlying
+    );
   }
 
   get eye(): Eye {
@@ -188,7 +196,13 @@ export class Stage implements World {
 
   /** Resolve when something has been drawn. */
   drawn(): Promise<void> {
-    return this.pictures > 0 ? Promise.resolve() : new Promise((resolve) => this.waiting.push(resolve));
+    return this.pictures > 0 ? Promise.resolve() : this.next();
+  }
+
+  /** Draw, and resolve when that is done. */
+  private next(): Promise<void> {
+    this.ask();
+    return new Promise((resolve) => this.waiting.push(resolve));
   }
 
   /** Draw now, at its finest, and return a copy. */
@@ -202,6 +216,15 @@ export class Stage implements World {
     return copy;
   }
 
+  /** Let what has come in go to the graphics card by and by; without one, nobody waits for each picture. */
+  private pause(pictures: readonly Texture[]): Promise<void> {
+    for (const picture of pictures) this.renderer.initTexture(picture);
+    this.moved_ms = performance.now();
+    if (!this.inSoftware) return this.next();
+    this.ask();
+    return new Promise((resolve) => setTimeout(resolve));
+  }
+
   private get front(): Square | null {
     return (this.above && this.share > 0.5 ? this.above : this.below)?.square ?? null;
   }
@@ -209,11 +232,13 @@ export class Stage implements World {
   private layer(square: Square): Layer {
     const known = this.layers.get(square);
     if (known) return known;
-    const layer: Layer = { square, sky: new Sky(), stale: true, thrown: false, plain: false };
+    const layer: Layer = { square, sky: new Sky(), stale: true, thrown: false, plain: false, compiled: "no" };
     this.layers.set(square, layer);
+    this.moved_ms = performance.now(); // a first picture that is there soon, then the finest
     square.scene.add(layer.sky.mesh);
     square.scene.fog = new Fog(0, ...FOG_M);
     (square.scene.fog as Fog).color = layer.sky.horizon;
+    square.pause = (pictures) => this.pause(pictures);
     square.changed = () => {
       if (this.isDressing) return;
       layer.stale = true;
@@ -271,10 +296,11 @@ export class Stage implements World {
       this.moved_ms = now_ms;
     }
     this.drawn_ms = isMoving ? now_ms : null;
-    const rests = now_ms - this.moved_ms >= REST_MS || this.pace.step === BEST;
+    const isReady = this.isReady();
+    const rests = this.pace.step === BEST || (isReady && now_ms - this.moved_ms >= REST_MS && this.isCompiled());
     this.take(rests ? BEST : this.pace.step);
     this.render();
-    if (!rests) this.restLater();
+    if (!rests && isReady && this.compiling === 0) this.restLater();
     if (goesOn || this.guestsMove) this.ask();
   }
 
@@ -285,12 +311,39 @@ export class Stage implements World {
     this.isHurried = step.plain;
     for (const layer of this.layers.values()) {
       if (layer.plain === step.plain) continue;
-      layer.plain = step.plain;
-      this.isDressing = true;
-      layer.square.work({ plain: step.plain, coarse: step.plain, shadows: true, occluders: true });
-      this.isDressing = false;
+      this.dress(layer, step.plain);
       layer.stale ||= !step.plain;
     }
+  }
+
+  /** Whether it is time for the finest picture: without a graphics card everything that comes in would wait for it. */
+  private isReady(): boolean {
+    return !this.inSoftware || [this.below, this.above].every((layer) => layer === null || layer.square.isWhole);
+  }
+
+  /** Whether the finest surfaces can be drawn at once; where not, begin to compile them, and ask again when that is done. */
+  private isCompiled(): boolean {
+    const layers = [this.below, this.above].filter((layer) => layer !== null);
+    for (const layer of layers.filter(({ compiled }) => compiled === "no")) {
+      layer.compiled = "soon";
+      this.compiling += 1;
+      this.dress(layer, false);
+      const done = this.renderer.compileAsync(layer.square.scene, this.camera);
+      this.dress(layer, true);
+      void done.then(() => {
+        layer.compiled = "yes";
+        this.compiling -= 1;
+        this.ask();
+      });
+    }
+    return layers.every(({ compiled }) => compiled === "yes");
+  }
+
+  private dress(layer: Layer, plain: boolean): void {
+    layer.plain = plain;
+    this.isDressing = true;
+    layer.square.work({ plain, coarse: plain, shadows: true, occluders: true });
+    this.isDressing = false;
   }
 
   private restLater(): void {
