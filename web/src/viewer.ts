@@ -22,6 +22,10 @@ const LONG_MESSAGE_BYTES = 384;
 
 /** What a page does with what its viewer draws. */
 export interface Audience {
+  /** Whether somebody looks for something in the picture: what stands today is then seen through the square. */
+  readonly aligning: boolean;
+  /** Whether the picture is to stay: others pass by undrawn. */
+  readonly holds: boolean;
   /** The rig need not wait for this picture any longer: it was drawn, or left out. */
   done(frameId: number): void;
   /** A picture was drawn just now. */
@@ -47,8 +51,6 @@ export class Viewer {
   framesDrawn = 0;
   posesDrawn = 0;
   mismatched = 0;
-  /** Pictures pass by undrawn. */
-  holds = false;
   lastPicture_ms: number | null = null;
   drawingLost = false;
   private garbled_ms = Number.NEGATIVE_INFINITY;
@@ -202,7 +204,7 @@ export class Viewer {
     const next = this.waiting;
     if (!next) return;
     this.waiting = null;
-    if (!this.holds && !this.drawingLost) {
+    if (!this.audience.holds && !this.drawingLost) {
       this.draw(next, now_ms);
       return;
     }
@@ -214,6 +216,7 @@ export class Viewer {
   private draw({ message, bitmap, arrived_ms }: Waiting, now_ms: number): void {
     this.frame = message;
     const { pose, locked } = this;
+    this.overlays.aligning = this.audience.aligning;
     this.overlay = this.overlays.take(message, locked);
     this.composite.laying = this.overlays.aligning ? seenThrough(this.overlay.laying) : this.overlay.laying;
     this.look.before(message, bitmap, now_ms);

@@ -42,6 +42,8 @@ export class ReplayPage {
       this.firstFrame = resolve;
     });
     this.viewer = new Viewer(element("view", HTMLCanvasElement), new URLSearchParams(location.search), {
+      aligning: false,
+      holds: false,
       done: (frameId) => source.done(frameId),
       drawn: (frame) => this.drawn(frame),
       back: () => undefined,
