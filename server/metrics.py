@@ -23,9 +23,9 @@ _COUNTERS: Final = (
 )
 _GAUGES: Final = (
     ("viewers", "Viewers connected."),
-    ("rig_connected", "Whether the rig is connected."),
-    ("frame_age_seconds", "Since the newest frame came."),
-    ("pose_age_seconds", "Since the newest pose came, by itself or with a frame."),
+    ("rig_connected", "Whether the rig is connected to this server."),
+    ("frame_age_seconds", "Since the newest frame came from a rig of this server."),
+    ("pose_age_seconds", "Since the newest pose came so, by itself or with a frame."),
 )
 
 
@@ -90,9 +90,10 @@ def _figures(session: Session, now_ns: int) -> dict[str, float | None]:
         "poses_sent": tally.poses_sent,
         "poses_dropped": tally.poses_dropped,
         "viewers": len(session.viewers),
-        "rig_connected": int(session.connected),
-        "frame_age_seconds": _age_s(session.t_frame_ns, now_ns),
-        "pose_age_seconds": _age_s(session.t_pose_ns, now_ns),
+        "rig_connected": int(session.connected and not session.elsewhere),
+        # another server's comes only while somebody watches it here
+        "frame_age_seconds": None if session.elsewhere else _age_s(session.t_frame_ns, now_ns),
+        "pose_age_seconds": None if session.elsewhere else _age_s(session.t_pose_ns, now_ns),
     }
 
 

@@ -122,6 +122,7 @@ def _health(session: Session, now_ns: int) -> dict[str, Any]:
     return {
         "name": session.name,
         "connected": session.connected,
+        "here": not session.elsewhere,
         "playing": session.playing,
         "frame_age_s": None if age_ns is None else age_ns * 1e-9,
         "frames_flow": age_ns is not None and age_ns <= _FRAME_FRESH_NS,

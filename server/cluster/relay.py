@@ -56,8 +56,8 @@ class Relay:
         """
         self.ready = False
         """Whether all sessions are known that others have kept."""
-        self.bus = bus
-        self._sessions, self._server, self._now_s, self._wall_ns = sessions, server, now_s, wall_ns
+        self.bus, self.server = bus, server
+        self._sessions, self._now_s, self._wall_ns = sessions, now_s, wall_ns
         self._own: dict[str, Entry] = {}
         self._mirrored: dict[str, Mirrored] = {}
         self._ended: OrderedDict[str, Entry] = OrderedDict()
@@ -261,7 +261,7 @@ class Relay:
     def _entry_of(self, session: Session, term: int, version: int) -> Entry:
         return Entry(
             name=session.name,
-            server=self._server,
+            server=self.server,
             term=term,
             version=version,
             connected=session.connected,
@@ -290,7 +290,7 @@ class Relay:
             self.bus.tell(ENTRIES, msgspec.json.encode(entry))
 
     def _write(self, server: str, session: str, kind: Any, text: str = "") -> None:
-        letter = Letter(sender=self._server, session=session, kind=kind, text=text)
+        letter = Letter(sender=self.server, session=session, kind=kind, text=text)
         self.bus.tell(_letters_of(server), msgspec.json.encode(letter))
 
     # -- by itself ----------------------------------------------------------------------------------------------------
@@ -303,7 +303,7 @@ class Relay:
     async def _repeat(self) -> None:
         turn = 0
         while True:
-            self.bus.show(HERE, self._server.encode())
+            self.bus.show(HERE, self.server.encode())
             if turn % 2 == 0 and self.peers:
                 self._tell_all()
             self._miss()

@@ -24,6 +24,9 @@ def test_what_came_while_the_loop_was_busy_goes_out_as_the_newest_with_the_seek_
         session.take_binary(encode_frame(example_frame(i), TINY_JPEG), 0)
     assert (len(turns), wire.sent) == (1, [])
     turns.pop()()
-    assert wire.sent == [encode_frame(example_frame(4, did_seek=True), TINY_JPEG), pose]
+    assert [message for message in wire.sent if isinstance(message, bytes)] == [
+        encode_frame(example_frame(4, did_seek=True), TINY_JPEG),
+        pose,
+    ]
     session.take_binary(pose, 0)
     assert len(turns) == 1, "the next one has a turn again"

@@ -45,7 +45,9 @@ class Server:
 
     def __init__(self, name: str, bus: Bus) -> None:
         self.sessions = Sessions(monotonic_ns)
-        self.relay = Relay(self.sessions, bus, name)
+        self.late_s = 0.0
+        """How far its clock is ahead."""
+        self.relay = Relay(self.sessions, bus, name, now_s=lambda: monotonic() + self.late_s)
         self.task = asyncio.create_task(self.relay.run())
 
     def rig(self, session: str, **state: Any) -> tuple[Mailbox, Wire, Session]:
@@ -102,10 +104,10 @@ async def _with_servers(buses: list[Bus], scene: Callable[[list[Server]], Awaita
         await until(lambda: all(server.relay.ready and len(server.relay.peers) == 2 for server in servers))
         await scene(servers)
         for session in [session for server in servers for session in server.sessions]:
-            if session.name in servers[0].sessions:
-                servers[0].sessions.end(session.name, ENDED, "over")  # nothing is kept for the next scene
+            if session.name in servers[1].sessions:
+                servers[1].sessions.end(session.name, ENDED, "over")  # nothing is kept for the next scene
         await until(lambda: not any(list(server.sessions) for server in servers))
-        while await servers[0].relay.bus.kept():
+        while await servers[1].relay.bus.kept():
             await asyncio.sleep(0.02)
     finally:
         for server in servers:
@@ -230,6 +232,54 @@ def test_an_operator_renames_and_ends_from_any_server(play: Play) -> None:
         await until(lambda: not any("walk.of-today" in server.sessions for server in servers))
         assert rig.closing == (ENDED, "It is late.")
         assert viewer.closing == (ENDED, "It is late.")
+
+    play(scene)
+
+
+def test_a_server_that_is_gone_leaves_its_sessions_to_the_others(play: Play) -> None:
+    """Nobody has the rig then; who renames one of them, or a rig that comes, takes it over."""
+
+    async def scene(servers: list[Server]) -> None:
+        gone, here, there = servers
+        gone.rig("walk")
+        await until(lambda: here.has_rig("walk") and there.has_rig("walk"))
+        viewer, wire = here.viewer("walk")
+        gone.task.cancel()
+        here.late_s = there.late_s = 60.0
+        await until(lambda: not here.has_rig("walk") and not there.has_rig("walk"))
+        assert "left" in json.loads(str(wire.sent[-1]))["session"]["notice"]
+        await until(lambda: len(here.relay.peers) == len(there.relay.peers) == 1)
+        here.sessions.get("walk").rename("Orphan")
+        await until(lambda: there.told("walk")["title"] == "Orphan")
+        there.rig("walk")
+        await until(lambda: here.has_rig("walk"))
+        here.sessions.end("walk", ENDED, "It is late.")
+        await until(lambda: "walk" not in here.sessions and "walk" not in there.sessions)
+        assert viewer.closing == (ENDED, "It is late.")
+        if "walk" in gone.sessions:  # a bus inside the process still brings it the news
+            gone.sessions.forget("walk", ENDED, "It is late.")
+
+    play(scene)
+
+
+def test_nonsense_on_the_bus_harms_nobody(play: Play) -> None:
+    async def scene(servers: list[Server]) -> None:
+        _, _, session = servers[0].rig("walk")
+        await until(lambda: servers[1].has_rig("walk"))
+        _, wire = servers[1].viewer("walk", "rig")
+        name, bus = servers[0].relay.server, servers[2].relay.bus
+        for subject in ("agora.entries", f"agora.to.{name}", "agora.poses.walk", "agora.frames.whole.walk"):
+            for data in (
+                b"",
+                b"{}",
+                b"[" * 100_000,
+                b"\xff\xfe",
+                b"AGF1",
+                b'{"name":"walk","server":"x","term":-1,"version":0}',
+            ):
+                bus.tell(subject, data)
+        await _frame_until(session, 1, lambda i: frame(i) in wire.sent)
+        assert servers[1].has_rig("walk")
 
     play(scene)
 
