@@ -16,6 +16,7 @@ import { element, tell } from "./dom";
 import type { Matrix4, Vector3 } from "./frames";
 import { headingOf } from "./frames";
 import { say } from "./language/speech";
+import { told } from "./language/told";
 import type { Pair } from "./lens";
 import { SiteMap } from "./map";
 import { pixelAt, placeOf } from "./picture";
@@ -127,7 +128,7 @@ export class Align {
     const sent = this.sent;
     this.sent = null;
     if (ok) this.host.announce(sent.words);
-    else this.host.announce(error ?? say("align.refused"));
+    else this.host.announce(error === null ? say("align.refused") : told(error));
     if (ok && sent.before !== null) this.settling = { before: sent.before, t_ns: null };
     return true;
   }

@@ -16,6 +16,7 @@ import { Guide } from "./guide";
 import { Hmd, worn } from "./hmd";
 import { Hud } from "./hud";
 import { languages, say } from "./language/speech";
+import { told } from "./language/told";
 import { SiteMap } from "./map";
 import { Narrator } from "./narrator";
 import { GHOST } from "./overlay";
@@ -141,7 +142,7 @@ class Page {
       const others = message.watching - 1;
       tell(element("watching", HTMLElement), others > 0 ? say("ar.others", { count: others }) : null);
     } else if (message?.type === "reply" && !this.align.replied(message.reply) && !message.reply.ok) {
-      this.hud.announce(message.reply.error ?? say("ar.did_not_work"));
+      this.hud.announce(message.reply.error === null ? say("ar.did_not_work") : told(message.reply.error));
     }
   }
 

@@ -3,6 +3,7 @@
  */
 
 import { say, sayLength, sayNumber } from "./language/speech";
+import { told } from "./language/told";
 import type { SensorHealth } from "./protocol";
 
 /** What of a sensor's health is put into words. */
@@ -47,12 +48,12 @@ export function sentenceFor(s: Situation): string | null {
   if (s.sincePicture_ms !== null && s.sincePicture_ms > QUIET_AFTER_MS && s.playing) return noPictures(s);
   if (s.garbled) return say("trouble.garbled");
   const trouble = Object.values(s.health).find((sensor) => sensor.trouble);
-  if (trouble) return trouble.sentence;
+  if (trouble) return told(trouble.sentence);
   if (s.model === "failed") return say("trouble.model_again", { trouble: say("trouble.model") });
   if (s.sincePicture_ms !== null && !s.hasPose) return say("trouble.no_pose");
   if (s.hasPose && !s.headingKnown) return say("trouble.no_heading");
   if (s.model === "loading" && s.sinceOpened_ms > QUIET_AFTER_MS) return say("trouble.loading");
-  return s.notice;
+  return s.notice === null ? null : told(s.notice);
 }
 
 const SENSORS = { gps: "sensor.gps", imu: "sensor.imu", camera: "sensor.camera" } as const;
@@ -65,7 +66,7 @@ function sensorWords(name: string): string {
 /** Return what has happened to a rig's sensors between two states, or null: a trouble in its own words, or that one is back. */
 export function newsOf(before: Readonly<Record<string, Told>>, now: Readonly<Record<string, Told>>): string | null {
   for (const [name, sensor] of Object.entries(now)) {
-    if (sensor.trouble && !before[name]?.trouble) return sensor.sentence;
+    if (sensor.trouble && !before[name]?.trouble) return told(sensor.sentence);
     if (!sensor.trouble && before[name]?.trouble) return say("sensor.back", { sensor: sensorWords(name) });
   }
   return null;
@@ -77,7 +78,7 @@ function noSession(asked: string | null): string {
 
 function noPictures(s: Situation): string {
   const camera = s.health["camera"];
-  if (camera?.trouble) return camera.sentence;
+  if (camera?.trouble) return told(camera.sentence);
   if (s.kind === "live") return say("trouble.no_pictures_live");
   return s.playing ? say("trouble.no_pictures") : say("trouble.press_play");
 }

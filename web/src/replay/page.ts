@@ -3,6 +3,7 @@
 import { adviceOf, headingWords, placeWords } from "../advice";
 import { element, tell } from "../dom";
 import { say } from "../language/speech";
+import { told } from "../language/told";
 import type { Session } from "../protocol";
 import { Viewer } from "../viewer";
 import type { FrameMessage } from "../wire";
@@ -76,7 +77,7 @@ export class ReplayPage {
       session: (session) => this.take(session),
       picture: (bytes) => this.viewer.take(bytes),
       garbled: (bytes) => (bytes === null ? this.viewer.noteGarbled() : this.viewer.garbled(bytes)),
-      refused: (reason) => this.announce(reason ?? say("ar.offline")),
+      refused: (reason) => this.announce(reason === null ? say("ar.offline") : told(reason)),
       connection: (state) => {
         this.connection = state;
       },
