@@ -1,7 +1,8 @@
 /** Walking: along walls and never through them, up stairs and never down from a height, the same way each time. */
 
-import { BODY_M, Ground, type Post } from "../../web/src/browse/ground";
+import { BODY_M, Ground } from "../../web/src/browse/ground";
 import { type Intent, STILL } from "../../web/src/browse/intent";
+import { type Post, postIn } from "../../web/src/browse/post";
 import { isAtRest, STRIDE_M, standing, type Walker, walk } from "../../web/src/browse/walker";
 import type { Triangle } from "../../web/src/edges";
 import type { Vector3 } from "../../web/src/frames";
@@ -190,4 +191,11 @@ test("the nearest place to stand is found from anywhere, and is one", () => {
     );
   });
   expect(new Ground([]).nearest([0, 0])).toBeNull();
+});
+
+test("a column is a post, a wall, a roof and a kerb are none", () => {
+  expect(postIn([1, 2, 0], [2, 3, 8])).toEqual({ e_m: 1.5, n_m: 2.5, radius_m: 0.4, bottom_m: 0, top_m: 8 });
+  expect(postIn([0, 0, 0], [9, 0.5, 8])).toBeNull();
+  expect(postIn([0, 0, 6], [4, 4, 7])).toBeNull();
+  expect(postIn([0, 0, 0], [0.3, 0.3, 0.2])).toBeNull();
 });

@@ -13,6 +13,7 @@ import {
   type Object3D,
 } from "three";
 import type { GLTF } from "three/addons/loaders/GLTFLoader.js";
+import { type Post, postIn } from "./browse/post";
 import { type Cells, cellOf, parseCells } from "./cells";
 import { isMergeable, type Laid, merged } from "./merge";
 import type { Surfaces } from "./surfaces";
@@ -22,6 +23,8 @@ import { type Extras, Thing } from "./thing";
 export interface Batches {
   readonly objects: readonly Object3D[];
   readonly things: readonly Thing[];
+  /** What of the buildings stands upright and slender, like columns: nobody walks through it. */
+  readonly posts: readonly Post[];
   /** Return what a ray has hit, if it is of this file. */
   find(hit: Intersection): Thing | null;
 }
@@ -50,6 +53,7 @@ export async function batchedInTurns(
 
 class Sorting {
   private readonly objects: Object3D[] = [];
+  private readonly posts: Post[] = [];
   private readonly things = new Map<string, Thing>();
   private readonly owners = new Map<Object3D, Thing | Thing[]>();
   /** By material and whether it is ground, by thing: what becomes one geometry. */
@@ -90,7 +94,7 @@ class Sorting {
       const owner = owners.get(object);
       return Array.isArray(owner) ? (owner[batchId ?? 0] ?? null) : (owner ?? null);
     };
-    return { objects: this.objects, things: [...this.things.values()], find };
+    return { objects: this.objects, things: [...this.things.values()], posts: this.posts, find };
   }
 
   private thing(name: string, extras: Extras): Thing {
@@ -117,6 +121,7 @@ class Sorting {
       mesh.getMatrixAt(i, T);
       return T.premultiply(mesh.matrixWorld);
     });
+    if (extras["monument"] && !extras["variant"]) this.posts.push(...postsOf(mesh.geometry, rows));
     for (const [place, own] of this.byCell(rows, name, extras)) {
       const thing = this.thing(place, extras);
       const triangles = (own.length * (mesh.geometry.index?.count ?? 0)) / 3;
@@ -223,6 +228,17 @@ class Sorting {
     const node = index === undefined ? undefined : parser.json["nodes"]?.[index];
     return [typeof node?.name === "string" ? node.name : object.name, (node?.extras ?? {}) as Extras];
   }
+}
+
+/** Return the copies that stand upright and slender, site frame. */
+function postsOf(geometry: BufferGeometry, rows: readonly Matrix4[]): Post[] {
+  geometry.computeBoundingBox();
+  const own = geometry.boundingBox;
+  if (!own) return [];
+  return rows.flatMap((T) => {
+    const box = own.clone().applyMatrix4(T);
+    return postIn([box.min.x, -box.max.z, box.min.y], [box.max.x, -box.min.z, box.max.y]) ?? [];
+  });
 }
 
 function materialOf(mesh: Mesh): Material {

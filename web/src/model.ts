@@ -14,6 +14,7 @@ import {
 } from "three";
 import type { GLTF } from "three/addons/loaders/GLTFLoader.js";
 import { type Batches, batched, batchedInTurns } from "./batches";
+import type { Post } from "./browse/post";
 import { EVIDENCE_COLOURS } from "./evidence";
 import { loader } from "./gltf";
 import { bestOf, levelAt } from "./levels";
@@ -42,6 +43,8 @@ interface Group {
 export class Square {
   readonly scene = new Scene();
   readonly bounds = new Box3();
+  /** What stands upright and slender in it. */
+  readonly posts: readonly Post[];
   /** Called when something has come in or changed, so that it be drawn, its shadows too. */
   changed: () => void = () => undefined;
   /** Called when something has come in that should go to the graphics card before the next does. */
@@ -71,6 +74,7 @@ export class Square {
     const extras = (first.asset["extras"] ?? {}) as Readonly<Record<string, unknown>>;
     if (Array.isArray(extras["level_reach_m"])) this.reach_m = extras["level_reach_m"] as number[];
     const file = batched(first, this.surfaces);
+    this.posts = file.posts;
     void this.lay(file.objects);
     this.take(file, levels.length - 1);
     this.scene.add(...this.light.objects);

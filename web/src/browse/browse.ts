@@ -42,6 +42,8 @@ export class Browse {
   /** Those who walk now; null where the address wants the square alone. */
   readonly beside: Beside | null;
   private readonly grounds = new Map<string, Ground>();
+  /** Those that know of their columns. */
+  private readonly posted = new WeakSet<Ground>();
   /** The stop that is stood at, and the eye that stands there: a finer ground may be a little higher. */
   private stood: { readonly stop: View; eye: Eye } | null = null;
   private toast: number | null = null;
@@ -271,6 +273,11 @@ export class Browse {
     for (const button of document.querySelectorAll<HTMLButtonElement>("[data-epoch]"))
       button.setAttribute("aria-pressed", String(button.dataset["epoch"] === epoch));
     const ground = this.grounds.get(epoch) ?? null;
+    const { square } = this.epochs;
+    if (ground && square && !this.posted.has(ground)) {
+      ground.put(square.posts);
+      this.posted.add(ground);
+    }
     if (ground !== this.stage.explorer.ground) {
       this.stage.explorer.ground = ground;
       this.showWay();

@@ -3,15 +3,7 @@
 import type { Triangle } from "../edges";
 import type { Vector3 } from "../frames";
 import type { Place } from "../plan";
-
-/** Something round that nobody walks through, like a column. */
-export interface Post {
-  readonly e_m: number;
-  readonly n_m: number;
-  readonly radius_m: number;
-  readonly bottom_m: number;
-  readonly top_m: number;
-}
+import type { Post } from "./post";
 
 /** What is looked up lies in cells of this side. */
 const CELL_M = 4;
@@ -35,6 +27,12 @@ export class Ground {
       const high: Place = [Math.max(...e) + CRACK_M, Math.max(...n) + CRACK_M];
       for (const cell of cellsOf(low, high)) push(this.triangles, cell, triangle);
     }
+    this.put(posts);
+    this.cells = [...this.triangles.keys()];
+  }
+
+  /** Put posts on it. */
+  put(posts: Iterable<Post>): void {
     for (const post of posts) {
       const reach = post.radius_m + BODY_M;
       const [low, high]: Place[] = [
@@ -43,7 +41,6 @@ export class Ground {
       ];
       if (low && high) for (const cell of cellsOf(low, high)) push(this.posts, cell, post);
     }
-    this.cells = [...this.triangles.keys()];
   }
 
   /** Return the highest ground at a place between two heights; null where nobody can stand. */
