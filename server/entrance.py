@@ -15,10 +15,11 @@ from server.codes import LIFETIME_S
 from server.errors import ServerFull, TokenRefused
 from server.grants import Grant, SessionName
 from server.tokens import Issued, is_token
+from server.welcome import language_of, said, words
 
 _STYLE: Final = (
     "body{background:#0b0a08;color:#eee6d8;font:1rem/1.5 system-ui,sans-serif;max-width:28rem;margin:15vh auto;padding:0 1rem}"
-    "input,button{font:inherit;padding:.4rem .6rem;width:100%;box-sizing:border-box;margin-top:.5rem}"
+    "input,button{font:inherit;padding:.4rem .6rem;width:100%;min-height:44px;box-sizing:border-box;margin-top:.5rem}"
 )
 #: The page's own policy: one style, told by its hash, and a form that comes back here; no script at all.
 _POLICY: Final = "; ".join(
@@ -30,10 +31,10 @@ _POLICY: Final = "; ".join(
         "frame-ancestors 'none'",
     )
 )
-_PAGE: Final = """<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">
-<title>Agora · enter</title><style>{style}</style><h1>Agora</h1><p>{sentence}</p>
-<form method="post" action="/enter"><label for="token">Token or code</label>
-<input id="token" name="token" type="password" autocomplete="off" required autofocus><button>Enter</button></form></html>"""
+_PAGE: Final = """<!doctype html><html lang="{language}"><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<title>{title}</title><style>{style}</style><h1>Agora</h1><p>{sentence}</p>
+<form method="post" action="/enter"><label for="token">{label}</label>
+<input id="token" name="token" type="password" autocomplete="off" required autofocus><button>{button}</button></form></html>"""
 _HEADERS: Final = {
     "Content-Security-Policy": _POLICY,
     "Cache-Control": "no-store",
@@ -57,7 +58,7 @@ def entrance_routes(access: Access) -> APIRouter:
     @router.get("/enter", include_in_schema=False)
     async def enter(request: Request, code: str | None = None) -> Response:
         if code is None:
-            return _page("Show what its operator gave you.")
+            return _page(request, "Show what its operator gave you.")
         return _admit(access, request, code)
 
     @router.post("/enter", include_in_schema=False)
@@ -91,7 +92,7 @@ def _admit(access: Access, request: Request, shown: str) -> Response:
     try:
         grant = access.signer.read(shown) if is_token(shown) else access.codes.redeem(shown)
     except TokenRefused as exc:
-        return _page(str(exc), 401)
+        return _page(request, str(exc), 401)
     onwards = "/" if grant.session is None else f"/ar?session={grant.session}"
     cookie = access.cookie_of(grant, secure=_secure(request))
     return RedirectResponse(onwards, 303, {"Set-Cookie": cookie, "Cache-Control": "no-store"})
@@ -112,8 +113,10 @@ def _wanted(access: Access, grant: Grant, body: bytes) -> Grant:
     return Grant(wanted.role, session, t_end_s if grant.t_expires_s is None else min(t_end_s, grant.t_expires_s))
 
 
-def _page(sentence: str, status: int = 200) -> Response:
-    return HTMLResponse(_PAGE.format(style=_STYLE, sentence=escape(sentence)), status, _HEADERS)
+def _page(request: Request, sentence: str, status: int = 200) -> Response:
+    language = language_of(request.headers.get("accept-language"))
+    page = _PAGE.format(style=_STYLE, language=language, sentence=escape(said(sentence, language)), **words(language))
+    return HTMLResponse(page, status, _HEADERS)
 
 
 def _secure(request: Request) -> bool:
