@@ -124,7 +124,7 @@ def _measured(browser: Browser, url: str, renderer: str, seconds: float) -> Besi
 def _page(browser: Browser, url: str) -> Page:
     width, height = SIZE_PX
     page = browser.new_context(viewport={"width": width, "height": height}).new_page()
-    page.goto(url)
+    page.goto(url, wait_until="commit")
     while not page.evaluate("globalThis.agora?.stats()?.posesDrawn > 3"):
         page.wait_for_timeout(100)
     return page

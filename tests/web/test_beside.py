@@ -75,7 +75,7 @@ def test_a_walker_is_followed_until_one_goes_by_oneself(page: ArPage) -> None:
     page.ask(_SAMPLE, 10)
     assert 4.0 < page.ask(_AWAY_M) < 7.0
     press(page, "Leave")
-    page.until("document.querySelector('#beside [aria-pressed=true]') === null")
+    page.until("document.querySelector('#beside [data-on=true]') === null")
     page.until(f"{_AWAY_M} > 7")
 
 
@@ -88,7 +88,7 @@ def test_one_looks_out_of_a_walkers_eyes(page: ArPage) -> None:
     assert T[11] == pytest.approx(EYES_M, abs=0.01)
     page.page.focus("#view")
     page.page.keyboard.down("w")  # who goes by themselves is let go
-    page.until("document.querySelector('#beside [aria-pressed=true]') === null")
+    page.until("document.querySelector('#beside [data-on=true]') === null")
     page.page.keyboard.up("w")
 
 

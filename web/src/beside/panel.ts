@@ -78,8 +78,10 @@ export class Panel {
       row.name.textContent = nameOf(walk.session);
       for (const [way, button] of row.buttons) {
         const isOn = escort?.name === walk.name && escort.way === way;
-        button.setAttribute("aria-pressed", String(isOn));
+        button.dataset["on"] = String(isOn);
         button.textContent = isOn ? say("beside.leave") : say(WORDS[way]);
+        // several walkers have the same buttons
+        button.setAttribute("aria-label", `${button.textContent}: ${row.name.textContent}`);
       }
     }
     const watching = mine?.walk.watching ?? 0;
@@ -107,8 +109,7 @@ export class Panel {
     for (const way of ["follow", "eyes"] as const) {
       const button = document.createElement("button");
       button.type = "button";
-      button.onclick = () =>
-        button.getAttribute("aria-pressed") === "true" ? this.wishes.leave() : this.wishes.go(name, way);
+      button.onclick = () => (button.dataset["on"] === "true" ? this.wishes.leave() : this.wishes.go(name, way));
       buttons.set(way, button);
       ways.append(button);
     }
