@@ -80,7 +80,7 @@ bench: setup $(BIN)/.dev ## measure speed beside the peers; writes build/bench.j
 bench-accuracy: setup $(BIN)/.dev ## measure accuracy over seeds, on logs and beside rivals; ARGS="--only study --seeds 101-104" for a part
 	@$(BIN)/python -m tests.benchmarks.accuracy $(ARGS)
 
-soak: setup $(BIN)/.dev ## ten minutes of a live walk and eight hours of a rig, with limits, appended to docs/soak.md; ARGS="--only live"
+soak: setup $(BIN)/.dev ## ten minutes live, an hour of viewers, eight hours of a rig, with limits, into docs/soak.md; ARGS="--only viewers --watched 2"
 	@$(BIN)/python -m tests.benchmarks.soak $(ARGS)
 
 paper: setup $(BIN)/.dev ## measure all of the paper and write docs/paper.md anew; ARGS="--only document" for the writing alone

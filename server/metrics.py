@@ -36,11 +36,13 @@ class Metrics:
 
     def __init__(self, sessions: Sessions) -> None:
         self._registry = CollectorRegistry(auto_describe=False)
-        self._registry.register(_SessionFigures(sessions))
+        self._figures = _SessionFigures(sessions)
+        self._registry.register(self._figures)
         ProcessCollector(registry=self._registry)
 
-    def page(self) -> bytes:
-        """Return the page."""
+    def page(self, tasks: int = 0) -> bytes:
+        """Return the page; `tasks` is how many the event loop has."""
+        self._figures.tasks = tasks
         return generate_latest(self._registry)
 
 
@@ -49,10 +51,12 @@ class _SessionFigures(Collector):
 
     def __init__(self, sessions: Sessions) -> None:
         self._sessions = sessions
+        self.tasks = 0
 
     def collect(self) -> Iterator[Metric]:
         """Yield every family."""
         yield GaugeMetricFamily("agora_sessions", "Sessions, with a rig or without.", value=len(list(self._sessions)))
+        yield GaugeMetricFamily("agora_tasks", "Tasks of the event loop: two for each connection.", value=self.tasks)
         traffic = self._sessions.traffic
         refused = CounterMetricFamily("agora_refused", "Connections and messages turned away.", labels=["reason"])
         for reason, count in sorted(traffic.refused.items()):

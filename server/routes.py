@@ -1,5 +1,6 @@
 """Pages, models and the HTTP interface. Reads sessions, changes nothing."""
 
+from asyncio import all_tasks
 from collections.abc import Mapping
 from importlib.metadata import version
 from pathlib import Path
@@ -112,7 +113,7 @@ def api_routes(
 
     @router.get("/metrics", dependencies=[Depends(needs(access, "operate"))])
     async def metrics() -> Response:
-        return Response(page.page(), media_type=page.content_type)
+        return Response(page.page(len(all_tasks())), media_type=page.content_type)
 
     return router
 

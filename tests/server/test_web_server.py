@@ -60,6 +60,7 @@ def long_lived(tmp_path_factory: pytest.TempPathFactory) -> Iterator[WebServer]:
         ("/health", 503, '"ok":false'),
         ("/ready", 200, '"ok":true'),
         ("/metrics", 200, "agora_sessions 0"),
+        ("/metrics", 200, "agora_tasks "),
         ("/console", 404, "console"),
         ("/docs", 404, ""),
         ("/openapi.json", 200, "Agora"),

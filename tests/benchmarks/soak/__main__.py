@@ -1,4 +1,4 @@
-"""`make soak`: ten minutes of a live walk and eight hours of a rig, with figures, limits and verdicts in docs/soak.md.
+"""`make soak`: ten minutes of a live walk, an hour of viewers, and eight hours of a rig, with limits and verdicts in docs/soak.md.
 
 A run that was interrupted goes on with the part that was; what that part had measured is told apart.
 """
@@ -16,7 +16,7 @@ from shutil import rmtree
 import cv2
 from rich.console import Console
 
-from tests.benchmarks.soak import hours, live
+from tests.benchmarks.soak import hours, live, viewers
 from tests.benchmarks.soak.journal import Journal, Session, interrupted
 from tests.benchmarks.soak.process import lateness_ms, load
 from tests.benchmarks.soak.rows import Row, append, section
@@ -24,7 +24,8 @@ from tests.benchmarks.soak.to_and_fro import demo_pictures, write_log
 from tracker.log import Log
 
 ROOT = Path(__file__).parents[3]
-PARTS = ("live", "hours")
+PARTS = ("live", "viewers", "hours")
+_DEMO = ROOT / "assets" / "demo" / "state-agora-walk.mcap"
 _HALF_HOUR_S = 1800.0
 _REAL_TIME = ("chrt", "-r", "10")
 
@@ -41,10 +42,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     session = Session(folder, PARTS if asked.only is None else (asked.only,), commit)
     all_met = True
     for part in session.left:
-        title = f"{asked.minutes:g} minutes, live" if part == "live" else f"{asked.hours:g} hours, as fast as possible"
+        title = {
+            "live": f"{asked.minutes:g} minutes, live",
+            "viewers": f"{asked.watched:g} minutes of replay, with {viewers.PLACES} viewers that come and go",
+            "hours": f"{asked.hours:g} hours, as fast as possible",
+        }[part]
         about = {"when": f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC", "title": title, "commit": commit}
         journal, sentences = Journal(folder, part, about), [_about(commit, asked, part)]
-        rows = _live(asked, journal, console) if part == "live" else _hours(asked, journal, console)
+        rows = {"live": _live, "viewers": _viewers, "hours": _hours}[part](asked, journal, console)
         sentences.append(f"Load averages after: {load()}.")
         append(document, section(f"{about['when']}: {title}", sentences, rows))
         journal.end()
@@ -78,6 +83,22 @@ def _live(asked: argparse.Namespace, journal: Journal, console: Console) -> list
     return [*rows, Row("a bare timer's lateness before it, at ordinary priority, p99", timer_ms, "ms")]
 
 
+def _viewers(asked: argparse.Namespace, journal: Journal, console: Console) -> list[Row]:
+    folder = asked.folder / "served"
+    rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    samples = []
+    for sample in viewers.walk(_DEMO, folder, asked.watched * 60.0):
+        journal.add(asdict(sample))
+        samples.append(sample)
+        if len(samples) % 30 == 0:
+            console.print(
+                f"{sample.t_s:.0f} s: {sample.server_mb:.0f} and {sample.replay_mb:.0f} MB, {sample.tasks:.0f} tasks"
+            )
+    rmtree(folder)
+    return viewers.rows(samples)
+
+
 def _hours(asked: argparse.Namespace, journal: Journal, console: Console) -> list[Row]:
     marks = []
     for mark in hours.replay(asked.hours * 3600.0, min(_HALF_HOUR_S, asked.hours * 900.0)):
@@ -107,6 +128,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser("python -m tests.benchmarks.soak", description=__doc__)
     parser.add_argument("--only", choices=PARTS, help="one part")
     parser.add_argument("--minutes", type=float, default=10.0, help="of the live walk")
+    parser.add_argument("--watched", type=float, default=60.0, help="minutes of the replay with viewers")
     parser.add_argument("--hours", type=float, default=8.0, help="of the rig without camera")
     parser.add_argument(
         "--undisturbed", action="store_true", help="at real-time priority, on a machine that others use; as root"

@@ -6,7 +6,8 @@ from pathlib import Path
 
 HEAD = """# Soak
 
-What `make soak` measured, newest run last: ten minutes of `agora walk` in real time, and eight hours of a rig as fast as possible.
+What `make soak` measured, newest run last: ten minutes of `agora walk` in real time, an hour of a replay on `agora serve` with
+viewers that come and go, and eight hours of a rig as fast as possible.
 The walk is the demo's, to and fro: its drawn pictures, 640x480 JPEG, 15 a second, and 250 inertial samples a second, with its own
 server and a recording. The machine is what it was on that day: its load, and how many cores others' work took, are told.
 """

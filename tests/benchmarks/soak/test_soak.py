@@ -10,7 +10,7 @@ import pytest
 
 from assets.site import load_site
 from server.options import SITE, require_built
-from tests.benchmarks.soak import hours, live
+from tests.benchmarks.soak import hours, live, viewers
 from tests.benchmarks.soak.__main__ import main
 from tests.benchmarks.soak.journal import Interrupted, Journal, Session, interrupted
 from tests.benchmarks.soak.live import Sample
@@ -24,6 +24,7 @@ from tests.benchmarks.soak.to_and_fro import (
     frames,
     write_log,
 )
+from tests.walks import write_walk
 from tracker.log import Log
 from tracker.measurements import Frame, ImuSample
 from tracker.pictures import EncodedPicture, encode_jpeg
@@ -73,6 +74,40 @@ def test_the_endless_walk_goes_on_at_its_end() -> None:
     stamps = [m.t_ns for m in islice(endless_sensors(), 60_000) if isinstance(m, ImuSample)]
     assert np.diff(stamps).max() <= 8_000_000
     assert stamps[-1] - stamps[0] > 200e9
+
+
+def watched(t_s: float, mb: float, viewing: float = 18.0) -> viewers.Sample:
+    """Return a sample of a server with viewers."""
+    return viewers.Sample(t_s, mb, 100.0, viewing, 10.0 + 3.0 * viewing, 12.0 + viewing, 90)
+
+
+def test_a_server_is_judged_by_what_stays_when_all_have_gone() -> None:
+    nobody = watched(0.0, 100.0, viewing=0.0)
+    steady = [watched(float(t), 150.0 + 0.01 * t) for t in range(1, 601)]
+    met = {row.name: row.is_met for row in viewers.rows([nobody, *steady, replace(nobody, t_s=601.0)])}
+    assert met["the server's memory, last tenth over first"] is True
+    assert met["tasks left when all had gone"] is True
+    growing = [watched(float(t), 150.0 + 0.1 * t) for t in range(1, 601)]
+    left = replace(nobody, t_s=601.0, tasks=11.0, files=13.0)
+    broken = [row.name for row in viewers.rows([nobody, *growing, left]) if row.is_met is False]
+    assert broken == [
+        "the server's memory, last tenth over first",
+        "tasks left when all had gone",
+        "files left open when all had gone",
+    ]
+
+
+@pytest.mark.slow
+def test_viewers_come_and_go_and_leave_nothing(tmp_path: Path) -> None:
+    require_built(load_site(SITE))
+    log = write_walk(tmp_path / "walk.mcap", 8.0, pictures=True)
+    samples = list(viewers.walk(log, tmp_path / "data", 4.0))
+    rows = {row.name: row.value for row in viewers.rows(samples)}
+    assert rows["viewers that came and went"] >= viewers.PLACES / 2
+    assert max(sample.viewers for sample in samples) > 5
+    assert rows["tasks left when all had gone"] == 0
+    assert rows["files left open when all had gone"] == 0
+    assert samples[-1].replay_mb > 50.0
 
 
 @pytest.mark.slow
