@@ -7,6 +7,8 @@ import { type Chosen, CURVES, type CurveName, type Table, tableOf } from "./curv
 import { figureText } from "./told";
 
 const HEIGHT_PX = 116;
+/** Values nearer to each other are drawn as the same. */
+const FLAT = 1e-6;
 const SYNC = "agora-replay";
 
 interface Drawn {
@@ -64,7 +66,7 @@ export class Charts {
     this.root.append(figure);
     const style = getComputedStyle(this.root);
     const ink = style.getPropertyValue("--quiet").trim();
-    const grid = { stroke: style.getPropertyValue("--line").trim(), width: 1 };
+    const grid = { stroke: style.getPropertyValue("--grid").trim(), width: 1 };
     const axis = { stroke: ink, grid, ticks: { show: false }, font: "12px system-ui, sans-serif" };
     const plot = new uPlot(
       {
@@ -72,7 +74,7 @@ export class Charts {
         height: HEIGHT_PX,
         legend: { show: false },
         cursor: { sync: { key: SYNC, setSeries: false }, drag: { x: false, y: false }, y: false },
-        scales: { x: { time: false } },
+        scales: { x: { time: false }, y: { range: spanOf } },
         axes: [
           { ...axis, size: 22, gap: 2, space: 64, values: (_plot, ticks) => ticks.map(clockText) },
           { ...axis, size: 42, gap: 4, space: 26 },
@@ -111,6 +113,12 @@ export class Charts {
     for (const { plot } of this.drawn) plot.setSize({ width, height: HEIGHT_PX });
     this.at(this.position_s);
   }
+}
+
+/** Return from where to where values are drawn; those that are all the same have a little room, too. */
+function spanOf(_plot: uPlot, least: number | null, most: number | null): uPlot.Range.MinMax {
+  if (least === null || most === null) return [0, 1];
+  return most - least < FLAT ? [least - 0.5, most + 0.5] : uPlot.rangeNum(least, most, 0.1, true);
 }
 
 function note(words: string): HTMLElement {

@@ -1,7 +1,7 @@
 /** Estimators side by side: which are drawn, what each is off by, and the one that the picture is drawn by. DOM only. */
 
 import { say } from "../language/speech";
-import { estimatorChoices } from "../playback";
+import { type EstimatorChoice, estimatorChoices } from "../playback";
 import type { Session } from "../protocol";
 import type { Chosen } from "./curves";
 import type { Course, Figures } from "./review";
@@ -106,9 +106,10 @@ export class Rivals {
     const { session } = this;
     if (session === null) return;
     const focus = document.activeElement instanceof HTMLElement ? document.activeElement.dataset["focus"] : undefined;
-    this.body.replaceChildren(
-      ...estimatorChoices(session).map(({ name, reason }) => this.row(name, reason, session.estimator === name)),
-    );
+    const isShown = ({ name }: EstimatorChoice): boolean => name === session.estimator;
+    const choices = estimatorChoices(session);
+    const sorted = [...choices.filter(isShown), ...choices.filter((choice) => !isShown(choice))];
+    this.body.replaceChildren(...sorted.map((choice) => this.row(choice.name, choice.reason, isShown(choice))));
     if (focus !== undefined) this.body.querySelector<HTMLElement>(`[data-focus="${CSS.escape(focus)}"]`)?.focus();
     const gps_m = [...this.known.keys()]
       .map((name) => this.courseOf(name)?.figures.gps_m ?? null)
