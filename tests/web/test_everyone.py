@@ -58,6 +58,7 @@ KINDS = {
             click("[data-opens=help]"),
             click("#evidence"),
             click("#tour-open"),
+            click("#beside summary"),
         ),
     ),
     "plan": Kind("", "document.querySelector('#flat') !== null", ("null", click("#flat summary")), has_webgl=False),
