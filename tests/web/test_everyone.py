@@ -59,6 +59,7 @@ KINDS = {
             click("#evidence"),
             click("#tour-open"),
             click("#beside summary"),
+            click("#beside li button"),
         ),
     ),
     "plan": Kind("", "document.querySelector('#flat') !== null", ("null", click("#flat summary")), has_webgl=False),
