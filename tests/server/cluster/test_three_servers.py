@@ -6,7 +6,7 @@ from time import monotonic
 
 import pytest
 
-from tests.server.cluster.trio import MARK, Rig, Trio, Watcher, trio, wait
+from tests.server.cluster.trio import MARK, Rig, Served, Trio, Watcher, trio, wait
 
 NAMES = ("east-gate", "west-gate")
 
@@ -17,7 +17,7 @@ def test_a_node_and_then_a_server_are_killed(tmp_path: Path) -> None:
     with ExitStack() as stack:
         running = stack.enter_context(trio(tmp_path))
         rigs = [stack.enter_context(Rig(running.proxy.port, name, MARK * (i + 1))) for i, name in enumerate(NAMES)]
-        wait(lambda: all(set(server.sessions()) == set(NAMES) for server in running.servers))
+        wait(lambda: all(_told(server) for server in running.servers))
         watchers = [
             stack.enter_context(Watcher(server.port, running.proxy.port, name))
             for server in running.servers
@@ -39,6 +39,12 @@ def test_a_node_and_then_a_server_are_killed(tmp_path: Path) -> None:
         wait(lambda: watchers[-1].answers)
         assert watchers[-1].answers[0]["ok"]
         assert [len(rig.asked) for rig in rigs] == [0, 1]
+
+
+def _told(server: Served) -> bool:
+    """Whether a server knows what both rigs have told of themselves."""
+    sessions = server.sessions()
+    return all(name in sessions and sessions[name]["notice"] == name for name in NAMES)
 
 
 def _kill_the_rigs_node(running: Trio) -> None:

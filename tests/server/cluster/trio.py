@@ -245,7 +245,7 @@ class Watcher:
             self.told.append(parsed["session"])
 
 
-def wait(condition: Any, held_s: float = 30.0) -> None:
+def wait(condition: Any, held_s: float = 60.0) -> None:
     """Wait for a condition; fail after a while."""
     deadline = monotonic() + held_s
     while not condition():
