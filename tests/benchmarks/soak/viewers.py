@@ -33,7 +33,8 @@ PLACES: Final = 20
 _STAYS_S, _EMPTY_S = 6.0, 1.0
 _SESSION: Final = "walk"
 _EVERY_S: Final = 1.0
-#: Programs that start, and the first viewers, take memory that stays: the first share of the time is not judged, at most so long.
+#: Programs that start, and the first viewers, take memory that stays, and a replay keeps what it works out until its walk is whole:
+#: the first share of the time is not judged, at most so long. A run of less than five minutes is too short for the demo's walk.
 _WARM_SHARE, _WARM_S = 1.0 / 3.0, 300.0
 _FLAT: Final = 0.05
 _PATIENCE_S: Final = 60.0
