@@ -6,31 +6,32 @@ Chromium draws in software, so that a graphics card only makes it better; the St
 
 import argparse
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import cycle
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import monotonic
-from typing import Any, TypeVar
+from typing import Any
 
-from playwright.sync_api import Browser, CDPSession, sync_playwright
+from playwright.sync_api import CDPSession, ViewportSize, sync_playwright
 from rich.console import Console
 
 from assets.site import load_site
-from tests.benchmarks.ar_page import RENDERERS, ROOT
 from tests.ci.machine import find_browser
+from tests.conftest import BROWSER_FLAGS
 from tests.web.gallery import showing_site
 from tests.web.pages import ArPage
+from tests.web.walk import ROOT
 
-SIZE_PX = (1280, 720)
+SIZE_PX, SMALL_PX = (1280, 720), (320, 180)
+"""Memory hardly depends on the size, but how many rounds fit into a minute does."""
 LINE_BYTES_S, LATENCY_MS = 10e6 / 8.0, 20.0
 """10 Mbit/s, and the way to a server in the same town."""
 FIRST_PICTURE_MS, FIRST_PICTURE_BYTES, LONG_TASK_MS = 4000.0, 3_000_000, 200.0
 GROWTH_MB = 5.0
 """What a browser's heap may differ by between two equal moments."""
-_T = TypeVar("_T")
 _WATCH = """() => {
     globalThis.longTasks = [];
     new PerformanceObserver(list => longTasks.push(...list.getEntries().map(e => [e.startTime, e.duration])))
@@ -43,7 +44,6 @@ _FIRST = "() => agora.ready.then(() => performance.now())"
 class Opened:
     """What was measured of one visit."""
 
-    renderer: str
     first_picture_ms: float
     first_picture_bytes: int
     """All that had come by then, as it came over the line."""
@@ -62,30 +62,35 @@ class Kept:
 
 
 def measure() -> list[Opened]:
-    """Open the page once by the fastest renderer there is; empty without a browser."""
-    return list(_with_page(lambda page, renderer: [_opened(page, renderer)]))
+    """Open the page once; empty without a browser."""
+    with _visit(SIZE_PX) as visit:
+        return [] if visit is None else [_opened(visit)]
 
 
 def keep(minutes: float) -> Iterator[Kept]:
     """Go round the tour for so long; a value after each round."""
-    yield from _with_page(lambda page, _: _rounds(page, minutes * 60.0))
+    with _visit(SMALL_PX) as visit:
+        if visit is not None:
+            yield from _rounds(visit, minutes * 60.0)
 
 
-def _with_page(work: Callable[["_Visit", str], Iterable[_T]]) -> Iterator[_T]:
+@contextmanager
+def _visit(size_px: tuple[int, int]) -> Iterator["_Visit | None"]:
+    """A page that was not opened yet; None without a browser."""
     executable = find_browser()
     if executable is None:
+        yield None
         return
     with TemporaryDirectory() as folder, showing_site(Path(folder)) as showing, sync_playwright() as playwright:
-        for renderer, flags in RENDERERS.items():
-            browser = playwright.chromium.launch(executable_path=executable, args=list(flags))
-            try:
-                with _visit(browser, showing.url) as visit:
-                    if not visit.draws:
-                        continue
-                    yield from work(visit, renderer)
-                    return
-            finally:
-                browser.close()
+        browser = playwright.chromium.launch(executable_path=executable, args=list(BROWSER_FLAGS))
+        try:
+            # no service worker: it keeps the whole site once there is a picture, which is another thing to measure
+            viewport: ViewportSize = {"width": size_px[0], "height": size_px[1]}
+            context = browser.new_context(viewport=viewport, service_workers="block")
+            page = context.new_page()
+            yield _Visit(ArPage(page), context.new_cdp_session(page), showing.url)
+        finally:
+            browser.close()
 
 
 class _Visit:
@@ -101,25 +106,8 @@ class _Visit:
     def _count(self, event: dict[str, Any]) -> None:
         self.bytes += event["dataLength"]
 
-    @property
-    def draws(self) -> bool:
-        """Whether this browser has WebGL 2."""
-        return bool(self.page.ask("document.createElement('canvas').getContext('webgl2') !== null"))
 
-
-@contextmanager
-def _visit(browser: Browser, url: str) -> Iterator[_Visit]:
-    width, height = SIZE_PX
-    # no service worker: it keeps the whole site once there is a picture, which is another thing to measure
-    context = browser.new_context(viewport={"width": width, "height": height}, service_workers="block")
-    page = context.new_page()
-    try:
-        yield _Visit(ArPage(page), context.new_cdp_session(page), url)
-    finally:
-        context.close()
-
-
-def _opened(visit: _Visit, renderer: str) -> Opened:
+def _opened(visit: _Visit) -> Opened:
     page = visit.page
     visit.cdp.send(
         "Network.emulateNetworkConditions",
@@ -138,14 +126,14 @@ def _opened(visit: _Visit, renderer: str) -> Opened:
     page.page.keyboard.up("w")
     page.settle()
     tasks = [duration for start, duration in page.ask("longTasks") if start > first_ms]
-    return Opened(renderer, first_ms, came, max(tasks, default=0.0))
+    return Opened(first_ms, came, max(tasks, default=0.0))
 
 
 def _rounds(visit: _Visit, seconds: float) -> Iterator[Kept]:
     site = load_site(ROOT / "assets" / "state_agora")
     stops = [view.id for view in (site.default_view, *site.tour)]
     page, began_s = visit.page, monotonic()
-    page.page.goto(visit.url)
+    page.page.goto(f"{visit.url}?walkers=0")
     page.settle()
     for past in cycle((1, 0)):
         for i, stop in enumerate(stops):
