@@ -34,7 +34,7 @@ _PIECE_NS = 4_000_000
 #: How soon the longest of them is forgotten.
 _FORGET = 0.98
 #: A seek that takes longer shows its picture without a pose meanwhile.
-_PATIENCE_NS = 100_000_000
+_PATIENCE_NS = 60_000_000
 #: A playback later than this has lost its time for good and goes on from where it is, instead of racing after the clock.
 _LATEST_NS = 300_000_000
 

@@ -21,7 +21,7 @@ from rich.progress import track
 from rich.table import Table
 from vqf import VQF
 
-from tests.benchmarks import ar_page, beside, failover, home_page, siege
+from tests.benchmarks import ar_page, beside, failover, home_page, seeking, siege
 from tests.benchmarks.endurance import endure
 from tests.benchmarks.fanout import SERVERS, measure, rows_of
 from tracker.attitude import Madgwick
@@ -293,6 +293,22 @@ def siege_rows() -> list[Row]:
     return [Row(*fields) for fields in siege.rows_of(siege.measure())]
 
 
+def seeking_rows() -> list[Row]:
+    """Jumps in a replay of ten minutes, to the message with the picture: wall time, so a busy machine is slower."""
+    jumps, target_ms = seeking.measure(OUT), seeking.TARGET_MS
+    name = "jump in a ten-minute replay, p95"
+    return [
+        Row(f"{name}, worked out", jumps.warm_p95_ms, "ms", f"target {target_ms:g} ms", jumps.warm_p95_ms / target_ms),
+        Row(
+            f"{name}, further on, picture alone",
+            jumps.cold_p95_ms,
+            "ms",
+            f"target {target_ms:g} ms",
+            jumps.cold_p95_ms / target_ms,
+        ),
+    ]
+
+
 def camera_works() -> list[Callable[[], list[Row]]]:
     """What needs pictures; nothing where no walk with a camera is at hand."""
     path = next((path for path in CAMERA_LOGS if path.is_file()), None)
@@ -302,6 +318,7 @@ def camera_works() -> list[Callable[[], list[Row]]]:
     return [
         lambda: page_rows(path),
         lambda: vision_rows(log),
+        seeking_rows,
         lambda: replay_rows(log, f"with camera, {log.name}", 5.0, repeats=1),
     ]
 
