@@ -8,6 +8,7 @@ from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Histo
 from prometheus_client.metrics_core import Metric
 from prometheus_client.registry import Collector
 
+from server.cluster.relay import Relay
 from server.session import Session
 from server.sessions import Sessions
 from server.traffic import Durations
@@ -34,9 +35,11 @@ class Metrics:
 
     content_type: Final = "text/plain; version=0.0.4; charset=utf-8"
 
-    def __init__(self, sessions: Sessions) -> None:
+    def __init__(self, sessions: Sessions, relay: Relay | None = None) -> None:
         self._registry = CollectorRegistry(auto_describe=False)
         self._figures = _SessionFigures(sessions)
+        if relay is not None:
+            self._registry.register(_ClusterFigures(relay))
         self._registry.register(self._figures)
         ProcessCollector(registry=self._registry)
 
@@ -56,7 +59,7 @@ class _SessionFigures(Collector):
     def collect(self) -> Iterator[Metric]:
         """Yield every family."""
         yield GaugeMetricFamily("agora_sessions", "Sessions, with a rig or without.", value=len(list(self._sessions)))
-        yield GaugeMetricFamily("agora_tasks", "Tasks of the event loop: two for each connection.", value=self.tasks)
+        yield GaugeMetricFamily("agora_tasks", "Tasks of the event loop: three for each WebSocket.", value=self.tasks)
         traffic = self._sessions.traffic
         refused = CounterMetricFamily("agora_refused", "Connections and messages turned away.", labels=["reason"])
         for reason, count in sorted(traffic.refused.items()):
@@ -72,6 +75,23 @@ class _SessionFigures(Collector):
                     if (value := values[name]) is not None:
                         family.add_metric([session], value)
                 yield family
+
+
+class _ClusterFigures(Collector):
+    """Of the servers that this one is joined to."""
+
+    def __init__(self, relay: Relay) -> None:
+        self._relay = relay
+
+    def collect(self) -> Iterator[Metric]:
+        """Yield both families."""
+        yield GaugeMetricFamily(
+            "agora_servers", "Servers that are one, with this one.", value=len(self._relay.peers) + 1
+        )
+        connected = int(self._relay.bus.connected)
+        yield GaugeMetricFamily(
+            "agora_bus_connected", "Whether the way to the other servers is there.", value=connected
+        )
 
 
 def _histogram(what: str, durations: Durations) -> HistogramMetricFamily:

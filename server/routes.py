@@ -77,7 +77,7 @@ def api_routes(
     relay: Relay | None = None,
 ) -> APIRouter:
     """Return the JSON interface, health, readiness and metrics; `alone` is a server that is well without any walk."""
-    router, page = APIRouter(), Metrics(sessions)
+    router, page = APIRouter(), Metrics(sessions, relay)
 
     @router.get("/api/version")
     async def program_version() -> dict[str, Any]:

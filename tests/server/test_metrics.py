@@ -7,6 +7,8 @@ import pytest
 from prometheus_client.parser import text_string_to_metric_families
 from websockets.exceptions import InvalidStatus
 
+from server.cluster.bus import LocalBus
+from server.cluster.relay import Relay
 from server.fanout import Mailbox
 from server.metrics import Metrics
 from server.sessions import Sessions
@@ -26,9 +28,9 @@ class Clock:
         return self.ns
 
 
-def samples(sessions: Sessions) -> dict[str, float]:
+def samples(sessions: Sessions, relay: Relay | None = None) -> dict[str, float]:
     """Return the page's samples by name and labels."""
-    page = Metrics(sessions).page().decode()
+    page = Metrics(sessions, relay).page().decode()
     return {
         sample.name + "".join(f"|{value}" for value in sample.labels.values()): sample.value
         for family in text_string_to_metric_families(page)
@@ -102,6 +104,19 @@ def test_refusals_are_counted_by_reason_and_the_process_is_there(clock: Clock) -
     assert got["agora_refused_total|malformed"] == 2
     assert got["process_resident_memory_bytes"] > 1e6
     assert got["process_open_fds"] > 0
+
+
+def test_joined_servers_are_counted(clock: Clock) -> None:
+    sessions = Sessions(clock, later=at_once)
+    relay = Relay(sessions, LocalBus(), "one")
+    relay.peers["another"] = 0.0
+    session = sessions.mirror("walk")
+    session.mirror(None, {}, Mailbox())
+    session.take_binary(frame(1), clock.ns)
+    got = samples(sessions, relay)
+    assert (got["agora_servers"], got["agora_bus_connected"]) == (2, 1)
+    assert got["agora_rig_connected|walk"] == 0, "its rig is counted there"
+    assert "agora_frame_age_seconds|walk" not in got
 
 
 def test_a_duration_falls_into_the_class_whose_end_it_does_not_pass() -> None:
