@@ -13,6 +13,7 @@ import asyncio
 import json
 import os
 import resource
+import signal
 import subprocess
 import sys
 from base64 import b64encode
@@ -61,6 +62,8 @@ def measure(what: str, seconds: float, server: str = "serve") -> Figures:
         serving = stack.enter_context(_process(server))
         told = json.loads(_line(serving))
         url, token = told["url"], told["token"]
+        if server == "nats":  # a program of its own, which would outlive the process that started it
+            stack.callback(os.kill, told["pid"], signal.SIGKILL)
         if server != "viser":  # which has no rigs: whoever has it sets the pose in it
             rig = "push-nats" if server == "nats" else "push"
             stack.enter_context(_process(rig, what, url, token, str(seconds + 60.0)))
