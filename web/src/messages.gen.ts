@@ -56,7 +56,7 @@ export interface ControlRequest {
     | "settings"
     | "share"
     | "speed";
-  /** Seconds for `seek`, a factor for `speed`, a name for `estimator`, an alignment for `align`, whether to for `loop` and `share`, `KEY=VALUE` for `settings`, and an empty text for the usual ones again. */
+  /** Seconds for `seek`, a factor for `speed`, a name for `estimator`, an alignment for `align`, whether to for `loop` and for `share`, `KEY=VALUE` for `settings`, and an empty text for the usual ones again. */
   readonly value?: boolean | number | string | Tap | Here | TakeBack | null;
 }
 
