@@ -52,20 +52,20 @@ def _view(solids: list[dict[str, Any]], rng: np.random.Generator) -> dict[str, A
         float(v) for v in (rng.uniform(-130.0, 60.0), rng.uniform(-50.0, 70.0), rng.choice([1.65, 1.65, 1.65, 25.0]))
     ]
     heading_deg = float(rng.uniform(0.0, 360.0))
+    return {"eye_m": eye, "heading_rad": radians(heading_deg), **seen_from(solids, eye, heading_deg, HALF_DEG)}
+
+
+def seen_from(solids: list[dict[str, Any]], eye: list[float], heading_deg: float, half_deg: int) -> dict[str, Any]:
+    """Return what one stands in or on, and what is seen ahead, to the left and to the right."""
     outlines = {solid["id"]: Polygon(solid["footprint_en"]) for solid in solids}
     here = Point(eye[0], eye[1])
     under = sorted((outline.area, name) for name, outline in outlines.items() if outline.contains(here))
     standing = [s for s in solids if s["height_m"] > FLAT_M and not outlines[s["id"]].contains(here)]
     seen: dict[str, list[Glimpse]] = {}
-    for turn_deg in range(-HALF_DEG, HALF_DEG + 1):
+    for turn_deg in range(-half_deg, half_deg + 1):
         for name, distance_m, shown_deg in _along(eye, heading_deg + turn_deg, standing, outlines):
             seen.setdefault(name, []).append((turn_deg, distance_m, shown_deg))
-    return {
-        "eye_m": eye,
-        "heading_rad": radians(heading_deg),
-        "at": under[0][1] if under else None,
-        "sights": _sights(seen),
-    }
+    return {"at": under[0][1] if under else None, "sights": _sights(seen)}
 
 
 def _along(

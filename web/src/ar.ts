@@ -9,9 +9,8 @@ import { Care } from "./care";
 import { Choices } from "./choices";
 import { clockOff, clockWords } from "./clock";
 import { deedsOf } from "./deeds";
-import type { Standpoint } from "./describe";
 import { canDraw, element, publishNothing, tell } from "./dom";
-import { headingOf, T_gltf_site, transform, type Vector3 } from "./frames";
+import { T_gltf_site, transform, type Vector3 } from "./frames";
 import { Guide } from "./guide";
 import { Hmd, worn } from "./hmd";
 import { Hud } from "./hud";
@@ -26,7 +25,7 @@ import { askedName, newestName } from "./session";
 import { type ShareRequest, Sharing } from "./sharing";
 import { parseSite, type Site } from "./site";
 import { Link } from "./socket";
-import { type Audience, Viewer } from "./viewer";
+import { type Audience, fieldOf, Viewer } from "./viewer";
 import { type FrameMessage, magicOf } from "./wire";
 import { type Connection, newsOf } from "./words";
 
@@ -51,7 +50,7 @@ class Page {
     (share) => this.viewer.setPast(share),
     () => this.viewer.composite.redraw(),
   );
-  private readonly narrator = new Narrator(() => this.standpoint);
+  private readonly narrator = new Narrator(() => this.viewer.standpoint);
   private readonly hmd = this.wear();
   private link: Link | null = null;
   private readonly bar = new Bar((request) => this.ask(request));
@@ -150,7 +149,7 @@ class Page {
     const { viewer } = this;
     viewer.turn(now_ms);
     const { frame, locked } = viewer;
-    if (frame) this.hmd?.turn(locked?.headingKnown ? locked.T_site_cam : null, fieldOf(frame.lens), now_ms);
+    if (frame) this.hmd?.turn(locked?.headingKnown ? locked.T_site_cam : null, fieldOf(frame), now_ms);
     const playing = this.session?.playback?.playing ?? true;
     this.hud.show(frame, playing, now_ms);
     this.hud.advise({
@@ -203,14 +202,6 @@ class Page {
     this.bar.at(frame.position_s);
     this.align.drawn(frame);
     this.firstFrame();
-  }
-
-  /** Where the drawn picture's eye is; null where nobody knows where it looks. */
-  private get standpoint(): Standpoint | null {
-    const { frame, locked } = this.viewer;
-    if (!frame || !locked?.headingKnown) return null;
-    const [e_m, n_m, u_m] = transform(locked.T_site_cam, [0, 0, 0]);
-    return { e_m, n_m, u_m, heading_rad: headingOf(locked.T_site_cam), half_rad: fieldOf(frame.lens) / 2 };
   }
 
   /** Ask the rig for something; return the request's name, or null where there is no connection. */
@@ -280,11 +271,6 @@ class Page {
       if (key === "h" && !ctrlKey && !metaKey && !(target instanceof HTMLSelectElement)) classList.toggle("clean");
     });
   }
-}
-
-/** Return how wide a picture is in the display, radians, distortion aside. */
-function fieldOf({ width_px, fx_px }: FrameMessage["lens"]): number {
-  return 2 * Math.atan(width_px / (2 * fx_px));
 }
 
 /** What tests and support see: read-only but for `mark` and `setPast`. */

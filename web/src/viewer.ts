@@ -1,7 +1,8 @@
 /** Pictures of a walk on a canvas, each with the square drawn over it by the pose of that same picture. */
 
 import { Composite } from "./composite";
-import { invertRigid, transform, type Vector3 } from "./frames";
+import type { Standpoint } from "./describe";
+import { headingOf, invertRigid, transform, type Vector3 } from "./frames";
 import { watchInterruptions } from "./interruptions";
 import { project } from "./lens";
 import { Look } from "./look";
@@ -154,6 +155,14 @@ export class Viewer {
     return this.pose?.frameId === this.frame?.frameId ? this.pose : null;
   }
 
+  /** Where the eye of the picture that is drawn now is; null where nobody knows where it looks. */
+  get standpoint(): Standpoint | null {
+    const { frame, locked } = this;
+    if (!frame || !locked?.headingKnown) return null;
+    const [e_m, n_m, u_m] = transform(locked.T_site_cam, [0, 0, 0]);
+    return { e_m, n_m, u_m, heading_rad: headingOf(locked.T_site_cam), half_rad: fieldOf(frame) / 2 };
+  }
+
   /** Return the pixel of the drawn picture in which a point of the site is; null where it is in none. */
   project(point_site_m: Vector3): readonly [number, number] | null {
     const { frame, locked } = this;
@@ -243,4 +252,9 @@ export class Viewer {
 
 function notHidden(error: unknown): void {
   console.warn("nothing hides the square", error);
+}
+
+/** Return how wide a picture is, radians, distortion aside. */
+export function fieldOf({ lens }: FrameMessage): number {
+  return 2 * Math.atan(lens.width_px / (2 * lens.fx_px));
 }

@@ -4,6 +4,7 @@ import { adviceOf, headingWords, placeWords } from "../advice";
 import { element, tell } from "../dom";
 import { say } from "../language/speech";
 import { told } from "../language/told";
+import { Narrator } from "../narrator";
 import type { Session } from "../protocol";
 import { Viewer } from "../viewer";
 import type { FrameMessage } from "../wire";
@@ -28,6 +29,7 @@ export class ReplayPage {
   private readonly charts = new Charts(element("charts", HTMLElement), (position_s) => this.go(position_s));
   private readonly happenings = new Happenings((position_s) => this.go(position_s));
   private readonly rivals: Rivals;
+  private readonly narrator = new Narrator(() => this.viewer.standpoint);
   private readonly notice = element("notice", HTMLElement);
   private readonly toast = element("toast", HTMLElement);
   private timeline: Timeline | null = null;
@@ -88,6 +90,7 @@ export class ReplayPage {
     try {
       const site = await this.source.site();
       element("credit", HTMLElement).textContent = site.attribution;
+      this.narrator.learn(site.monuments);
       await this.viewer.show(site);
     } catch (error) {
       this.viewer.model = "failed";
