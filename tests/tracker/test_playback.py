@@ -228,10 +228,10 @@ class Watched:
         self.player.start()
 
     def until_sought(self) -> tuple[Shown, PlayerState]:
-        """Return the first picture after a seek."""
+        """Return the first picture after a seek; one that comes alone while its pose is worked out is passed by."""
         while True:
             shown, state, sought = self.shown.get(timeout=10.0)
-            if sought:
+            if sought and not state.seeking:
                 return shown, state
 
 
