@@ -237,6 +237,7 @@ def test_every_request_goes_to_the_pages_own_server(browser: Browser, showing: S
         ar.until("agora.stats().whole")
         ar.until("document.querySelector('#walks a') !== null")
         assert "OpenStreetMap" in ar.page.inner_text("#credit")
+        ar.page.click("#live-open")
         ar.page.click("#walks a")
         ar.until_drawn()
         assert ar.page.url == f"{showing.url}replay/{NAME}"
