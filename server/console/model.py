@@ -1,12 +1,14 @@
 """The ancient square as few coarse meshes, each of one material and one level of evidence: what the console draws and tints."""
 
 from collections import defaultdict
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from assets.levels import group_of
 from assets.records import Evidence, Site
 from assets.roman import build_roman
 from assets.scene import Node, expanded
@@ -41,10 +43,10 @@ class Part:
 
 
 def build_parts(site: Site) -> list[Part]:
-    """Return the square of a site: some seconds of work, some megabytes."""
+    """Return the square of a site, of rival reconstructions the first: some seconds of work, some megabytes."""
     scene = expanded(build_roman(site, lambda done: None, level=_COARSEST))
     found: dict[tuple[Layer, str, Evidence], list[Mesh]] = defaultdict(list)
-    for node in scene.nodes:
+    for node in _of_first_variants(scene.nodes):
         for mesh in node.meshes:
             found[_layer_of(node), mesh.material, node.extras.get("evidence", "hypothetical")].append(mesh)
     colours = {name: _mean_colour(texture) for name, texture in scene.textures.items()}
@@ -52,6 +54,14 @@ def build_parts(site: Site) -> list[Part]:
         Part(f"{layer}/{material}-{evidence}", layer, evidence, colours[material], *_joined(meshes))
         for (layer, material, evidence), meshes in found.items()
     ]
+
+
+def _of_first_variants(nodes: Iterable[Node]) -> Iterator[Node]:
+    first: dict[str, str] = {}
+    for node in nodes:
+        variant = node.extras.get("variant")
+        if variant is None or first.setdefault(group_of(node.name, node.extras), variant) == variant:
+            yield node
 
 
 def _layer_of(node: Node) -> Layer:
