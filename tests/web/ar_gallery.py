@@ -1,4 +1,4 @@
-"""Golden pictures of the AR page: the sun at three hours, what hides the model, and both head-mounted displays.
+"""Golden pictures of the AR page: the sun at three hours, what hides the model, every style of doubt, both head-mounted displays.
 
 `python -m tests.web.ar_gallery` draws them anew, after they have changed on purpose; somebody then looks at them.
 """
@@ -20,7 +20,8 @@ from server.showing import Showing
 from tests.ci.machine import find_browser
 from tests.conftest import BROWSER_FLAGS
 from tests.web.likeness import Picture
-from tests.web.pages import ALONE, open_page
+from tests.web.pages import ALONE, ArPage, open_page
+from tests.web.tampering import Doubting
 from tests.web.walk import ROOT, make_walk, position_of, showing_walk
 
 GOLDEN = ROOT / "tests" / "golden" / "ar"
@@ -35,6 +36,8 @@ PAGES = {
     "hmd.eyes": f"effort=surfaces&display=hmd&eyes=2&{_EVENING}",
 }
 """What each is asked for by."""
+STYLES = {"locked": (0.5, 0.5), "ghost": (3.0, 3.0), "guide": (3.0, 20.0)}
+"""How unsure the pose is for each style of the overlay: one sigma, m and degrees."""
 
 
 @dataclass(frozen=True)
@@ -66,23 +69,40 @@ def shots(browser: Browser, url: str) -> Iterator[Shot]:
     """Draw every page."""
     for name, query in PAGES.items():
         with open_page(browser) as ar:
-            ar.page.goto(f"{url}ar?{query}")
-            ar.until_drawn()
-            ar.until("agora.stats().occluders")
-            ar.ask("document.querySelector('#past').value = 100; document.querySelector('#past').oninput()")
-            ar.ask(ALONE)
-            if ar.ask("agora.session().playback.playing"):
-                ar.ask("document.querySelector('#play').click()")
-                ar.until("!agora.session().playback.playing")
-            ar.seek_to(position_of(FRAME), FRAME)
+            _settle(ar, f"{url}ar?{query}")
             if name.startswith("hmd"):
                 for _ in range(3):
                     ar.page.keyboard.press("x", delay=100)
-            ar.until("agora.session().notice === null")
-            ar.page.wait_for_timeout(500)
-            raw = np.frombuffer(ar.page.screenshot(), np.uint8)
-            yield Shot(name, np.asarray(cv2.imdecode(raw, cv2.IMREAD_COLOR), np.uint8))
-            assert ar.errors == []
+            yield _shot(ar, name)
+    for style, (sigma_m, sigma_deg) in STYLES.items():
+        with open_page(browser) as ar:
+            doubting = Doubting(ar.page)
+            doubting.sigma_m, doubting.sigma_deg = sigma_m, sigma_deg
+            _settle(ar, f"{url}ar?effort=surfaces&sun=12")
+            ar.until(f"agora.stats().overlay === '{style}'")
+            ar.ask("document.querySelector('#wayfinder').style.visibility = 'visible'")
+            yield _shot(ar, f"style.{style}")
+
+
+def _settle(ar: ArPage, url: str) -> None:
+    """Open the page at its picture, all of the past shown and nothing else over it."""
+    ar.page.goto(url)
+    ar.until_drawn()
+    ar.until("agora.stats().occluders")
+    ar.ask("document.querySelector('#past').value = 100; document.querySelector('#past').oninput()")
+    ar.ask(ALONE)
+    if ar.ask("agora.session().playback.playing"):
+        ar.ask("document.querySelector('#play').click()")
+        ar.until("!agora.session().playback.playing")
+    ar.seek_to(position_of(FRAME), FRAME)
+
+
+def _shot(ar: ArPage, name: str) -> Shot:
+    ar.until("agora.session().notice === null")
+    ar.page.wait_for_timeout(500)
+    raw = np.frombuffer(ar.page.screenshot(), np.uint8)
+    assert ar.errors == []
+    return Shot(name, np.asarray(cv2.imdecode(raw, cv2.IMREAD_COLOR), np.uint8))
 
 
 def main() -> None:

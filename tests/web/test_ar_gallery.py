@@ -1,4 +1,4 @@
-"""The AR page looks as it looked when somebody last looked at it: three hours of the sun, and both head-mounted displays.
+"""The AR page looks as it looked when somebody last looked at it: at three hours, in every style of doubt, on both displays.
 
 After a change that is meant to be seen: `python -m tests.web.ar_gallery`, and look at tests/golden/ar.
 """
@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser
 
-from tests.web.ar_gallery import GOLDEN, PAGES, Shot, shots, showing
+from tests.web.ar_gallery import GOLDEN, PAGES, STYLES, Shot, shots, showing
 from tests.web.likeness import LEAST_LIKENESS, MOST_DIFFERENCE, Picture, difference, kept, likeness
 
 pytestmark = pytest.mark.browser
@@ -30,7 +30,7 @@ def golden(name: str) -> Picture:
     return kept(GOLDEN / f"{name}.webp", "python -m tests.web.ar_gallery")
 
 
-@pytest.mark.parametrize("name", PAGES)
+@pytest.mark.parametrize("name", [*PAGES, *(f"style.{style}" for style in STYLES)])
 def test_the_page_looks_as_it_did(drawn: dict[str, Shot], name: str) -> None:
     now, before = drawn[name].picture, golden(name)
     assert now.shape == before.shape
@@ -44,6 +44,13 @@ def test_every_hour_has_its_own_light() -> None:
     for i, hour in enumerate(hours):
         for other in hours[i + 1 :]:
             assert difference(hour, other) > SEEN
+
+
+def test_every_style_is_told_from_the_others() -> None:
+    locked, ghost, guide = (golden(f"style.{style}") for style in STYLES)
+    assert difference(locked, ghost) > SEEN
+    assert difference(ghost, guide) > SEEN
+    assert difference(locked, guide) > SEEN
 
 
 def test_both_eyes_see_the_same_picture_but_for_their_distance() -> None:
