@@ -196,6 +196,7 @@ class LiveRig:
             "estimators": [self.estimator],
             "unavailable": {},
             "anchor": self._placing.anchor,
+            "utc_offset_s": self._utc_offset_ns * 1e-9,
             "playback": None,
             "notice": self._notice(None),
             "health": {},

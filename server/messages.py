@@ -20,6 +20,7 @@ MAX_RIG_TEXT: Final = 64 * 1024
 T = TypeVar("T")
 Action = Literal["play", "pause", "seek", "speed", "loop", "estimator", "align", "share", "settings", "figures"]
 Seconds: TypeAlias = Annotated[float, Meta(ge=0.0, le=1e9)]
+Offset: TypeAlias = Annotated[float, Meta(ge=-1e11, le=1e11)]
 Name: TypeAlias = Annotated[str, Meta(max_length=256)]
 Sentence: TypeAlias = Annotated[str, Meta(max_length=2000)]
 Metres: TypeAlias = Annotated[float, Meta(ge=-1e5, le=1e5)]
@@ -165,6 +166,7 @@ class SessionFields(Struct, frozen=True, kw_only=True):
     unavailable: dict[Name, Sentence] | UnsetType = UNSET
     playback: Playback | UnsetType | None = UNSET
     anchor: Literal["site", "here"] | UnsetType = UNSET
+    utc_offset_s: Offset | UnsetType | None = UNSET
     notice: Sentence | UnsetType | None = UNSET
     health: dict[Name, SensorHealth] | UnsetType = UNSET
     sharing: bool | UnsetType = UNSET
@@ -206,6 +208,8 @@ class Session(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     playback: Playback | None
     """Null for a live walk."""
     anchor: Literal["site", "here"]
+    utc_offset_s: Offset | None
+    """What a picture's stamp needs for the seconds since 1970 (UTC), by which the sun is found; null where nobody knows."""
     notice: Sentence | None
     """What whoever watches should know."""
     health: dict[Name, SensorHealth]

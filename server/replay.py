@@ -144,6 +144,7 @@ class Replay:
             "estimators": list(ESTIMATORS),
             "unavailable": {name: f"This walk has {reason}." for name, reason in missing.items() if reason},
             "anchor": self._settings.anchor,
+            "utc_offset_s": log.info.utc_offset_s,
             "notice": self._notice(),
             "playback": _playback(self.player.state),
         }

@@ -32,6 +32,7 @@ _DEFAULTS: Final[dict[str, Any]] = {
     "unavailable": {},
     "playback": None,
     "anchor": "site",
+    "utc_offset_s": None,
     "notice": None,
     "health": {},
     "sharing": False,

@@ -46,6 +46,8 @@ TOPICS: dict[str, tuple[str, str]] = {
 }
 #: Name of the metadata that our recorder writes.
 RECORDING = "agora"
+#: Stamps before 2001 are no dates: a rig counts from when it was switched on.
+_DATED_NS = 1_000_000_000_000_000_000
 _CAMERA = ("/camera/image/compressed", "/camera/video")
 
 
@@ -72,6 +74,13 @@ class LogInfo:
     def date_ns(self) -> int:
         """When the walk was, nanoseconds since 1970."""
         return self.t_start_ns if self.utc_start_ns is None else self.utc_start_ns
+
+    @property
+    def utc_offset_s(self) -> float | None:
+        """What a stamp needs for the seconds since 1970; None where nobody has written down when the walk was."""
+        if self.utc_start_ns is not None:
+            return (self.utc_start_ns - self.t_start_ns) * 1e-9
+        return 0.0 if self.t_start_ns >= _DATED_NS else None
 
     @property
     def duration_s(self) -> float:

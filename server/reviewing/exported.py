@@ -65,6 +65,7 @@ class Exporter:
             "name": name,
             "estimator": head.estimator,
             "duration_s": head.duration_s,
+            "utc_offset_s": head.utc_offset_s,
             "positions_s": head.positions_s,
             "site": self._site(),
             "timeline": json.loads(timeline),

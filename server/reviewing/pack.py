@@ -38,6 +38,8 @@ class Packed(msgspec.Struct, frozen=True):
 
     estimator: str
     duration_s: float
+    utc_offset_s: float | None
+    """See `server.messages.Session`."""
     positions_s: list[float]
     """Of each message: seconds from the walk's start."""
 
@@ -59,7 +61,7 @@ def packed(log: Log, job: PackJob) -> bytes:
         raise LogRefused(413, _too_long(size, job))
     kept = messages[::every]
     positions_s = [round(decode_frame(message)[0].position_s, 4) for message in kept]
-    head = msgspec.json.encode(Packed(estimator, log.info.duration_s, positions_s)) + b"\n"
+    head = msgspec.json.encode(Packed(estimator, log.info.duration_s, log.info.utc_offset_s, positions_s)) + b"\n"
     return head + b"".join(_LENGTH.pack(len(message)) + message for message in kept)
 
 

@@ -1,4 +1,4 @@
-"""The demo's pictures can be tracked: features, their tracks, and the rotation between two views."""
+"""The demo's pictures can be tracked: features, their tracks, and the rotation between two views; and its sun is theirs."""
 
 from dataclasses import dataclass
 
@@ -6,7 +6,10 @@ import cv2
 import numpy as np
 import pytest
 
-from server.cli import DEMO_LOG
+from assets.site import load_site
+from assets.solar import direction, sun_at
+from assets.sun import sun_direction
+from server.cli import DEMO_LOG, SITE
 from tracker.geometry import matrix_from_wxyz
 from tracker.log import Log
 from tracker.measurements import Frame, Matrix, TruePose, VisualMotion
@@ -80,3 +83,12 @@ def test_rotation_between_two_views_agrees_with_truth(demo: Demo) -> None:
 
 def test_features_stay_on_their_tracks(demo: Demo) -> None:
     assert np.median([motion.inliers for motion in demo.motions]) >= TRACKS_LEAST
+
+
+def test_the_sun_of_the_walks_date_is_the_sun_of_its_pictures() -> None:
+    info = Log.open(DEMO_LOG).info
+    origin = load_site(SITE).origin
+    assert info.utc_offset_s is not None
+    sun = sun_at(info.t_start_ns * 1e-9 + info.utc_offset_s, origin.lat_deg, origin.lon_deg)
+    off_deg = np.degrees(np.arccos(np.dot(direction(sun), sun_direction())))
+    assert off_deg < 1.0, "shadows in the picture and on the page would fall apart"

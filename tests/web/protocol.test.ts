@@ -15,6 +15,7 @@ const SESSION = {
   unavailable: { "gps-imu/famm": "This walk has no GPS." },
   playback: { playing: true, position_s: 3.25, speed: 2, looping: false },
   anchor: "here",
+  utc_offset_s: 1_777_115_280.25,
   notice: null,
   health: {},
   sharing: false,

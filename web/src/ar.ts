@@ -134,6 +134,7 @@ class Page {
       const news = this.session && newsOf(this.session.health, message.session.health);
       if (news) this.hud.announce(news);
       this.session = message.session;
+      this.viewer.look.utcOffset_s = message.session.utc_offset_s;
       this.bar.show(message.session);
       this.care.show(message.session);
       this.sharing.show(message.session, message.role);

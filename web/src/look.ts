@@ -11,8 +11,6 @@ import type { FrameMessage } from "./wire";
 /** What the visitor wants of the sun: as it is, as it was at this hour in antiquity, or a solar hour. */
 export type SunWish = "now" | "ancient" | number;
 
-/** Times before 2001 are no dates: a live rig counts from when it was switched on. */
-const DATED_NS = 1e18;
 /** Shadows are drawn anew when the sun has moved by as much as it is wide. */
 const MOVED_RAD = (0.5 * Math.PI) / 180;
 const METERED_EVERY_MS = 200;
@@ -24,6 +22,8 @@ export class Look {
   origin: Origin | null = null;
   /** The true time less this browser's clock, seconds. */
   clockOff_s = 0;
+  /** What a picture's stamp needs for the seconds since 1970; null where nobody knows: then it is of now. */
+  utcOffset_s: number | null = null;
   sun: Sun | null = null;
   private wish: SunWish = "now";
   private lit: Sun | null = null;
@@ -117,8 +117,8 @@ export class Look {
   private sunFor(wish: SunWish): Sun | null {
     const { origin, message } = this;
     if (!origin || !message) return null;
-    const isDated = message.t_capture_ns >= DATED_NS;
-    const now_s = isDated ? message.t_capture_ns / 1e9 : Date.now() / 1000 + this.clockOff_s;
+    const { utcOffset_s } = this;
+    const now_s = utcOffset_s === null ? Date.now() / 1000 + this.clockOff_s : message.t_capture_ns / 1e9 + utcOffset_s;
     const t_s = typeof wish === "number" ? atSolarHour(now_s, origin.lon_deg, wish) : now_s;
     return sunAt(t_s, origin.lat_deg, origin.lon_deg, wish === "now" ? null : ANCIENT_YEAR);
   }

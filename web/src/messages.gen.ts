@@ -111,6 +111,8 @@ export interface Session {
   /** Null for a live walk. */
   readonly playback: Playback | null;
   readonly anchor: "here" | "site";
+  /** What a picture's stamp needs for the seconds since 1970 (UTC), by which the sun is found; null where nobody knows. */
+  readonly utc_offset_s: number | null;
   /** What whoever watches should know. */
   readonly notice: string | null;
   /** How a live rig's sensors are, by name; empty for a replay. */

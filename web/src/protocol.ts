@@ -88,6 +88,7 @@ export function parseSession(value: unknown): Session {
     unavailable: texts(session["unavailable"]),
     playback: kind === "live" ? null : parsePlayback(session["playback"]),
     anchor: session["anchor"] === "here" ? "here" : "site",
+    utc_offset_s: typeof session["utc_offset_s"] === "number" ? number(session["utc_offset_s"], 0) : null,
     notice: typeof session["notice"] === "string" && session["notice"] !== "" ? session["notice"] : null,
     health: parseHealth(session["health"]),
     sharing: session["sharing"] === true,

@@ -44,6 +44,7 @@ def test_a_replay_of_a_recording_gives_the_same_poses_bit_for_bit(name: str, tmp
     _record(tmp_path / "walk.mcap", noted.fed).close()
     log = Log.open(tmp_path / "walk.mcap")
     assert log.info.date_ns == UTC_NS
+    assert log.info.utc_offset_s == (UTC_NS - START_NS) * 1e-9
     assert log.metadata["agora"]["rig"] == ABOUT["rig"]
     again = rows_of(make_pipeline(name, log, AGORA_ORIGIN), log.messages())
     assert not log.skipped

@@ -19,6 +19,7 @@ export class Inlined implements Source {
   private readonly positions_s: readonly number[];
   private readonly duration_s: number;
   private readonly estimator: string;
+  private readonly utcOffset_s: number | null;
   private listener: Listener | null = null;
   private playback = { playing: true, position_s: 0, speed: 1, looping: true };
   private shown = -1;
@@ -30,6 +31,8 @@ export class Inlined implements Source {
     this.frames = frames.split("\n");
     this.name = text_(this.facts["name"], "");
     this.estimator = text_(this.facts["estimator"], "");
+    const offset_s = this.facts["utc_offset_s"];
+    this.utcOffset_s = typeof offset_s === "number" ? offset_s : null;
     this.duration_s = number(this.facts["duration_s"], 0);
     this.positions_s = list(this.facts["positions_s"]).map((entry) => number(entry, 0));
   }
@@ -85,6 +88,7 @@ export class Inlined implements Source {
       unavailable: {},
       playback: { ...this.playback },
       anchor: "site",
+      utc_offset_s: this.utcOffset_s,
       notice: null,
       health: {},
       sharing: false,

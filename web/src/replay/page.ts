@@ -116,6 +116,7 @@ export class ReplayPage {
     this.transport.show(session);
     const isFirst = this.session === null;
     this.session = session;
+    this.viewer.look.utcOffset_s = session.utc_offset_s;
     this.rivals.show(session);
     // what takes long comes last
     if (isFirst && this.isLearned) this.rivals.begin();
