@@ -16,6 +16,7 @@ GOLDEN_PATH = ROOT / "tests" / "golden" / "sentences.json"
 TELLING = (
     "server/replay.py",
     "server/live_rig.py",
+    "server/session.py",
     "server/sessions.py",
     "server/push.py",
     "server/aligning.py",
