@@ -41,7 +41,7 @@ def ar(browser: Browser, showing: Showing) -> Iterator[ArPage]:
     [
         ("", "agora.stats()?.triangles > 0"),
         ("ar", "agora.stats()?.framesDrawn > 0"),
-        (f"replay/{NAME}", "agora.session() !== null"),
+        (f"replay/{NAME}", "agora.stats()?.framesDrawn > 0"),
     ],
     ids=["start", "ar", "replay"],
 )

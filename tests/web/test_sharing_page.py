@@ -91,6 +91,7 @@ def test_a_page_without_a_token_says_how_to_enter(server: WebServer, guest: ArPa
     guest.page.goto(f"{server.url}ar?session=walk")
     guest.until("document.body.innerText.includes('/enter')")
     guest.page.goto(server.url)
+    guest.page.press("#live-open", "Enter")
     guest.page.press("#enter a", "Enter")  # there is no model here, and the notice of that is in the way of a click
     guest.page.fill("#token", token("viewer"))
     guest.page.click("button")
