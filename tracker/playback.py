@@ -117,6 +117,13 @@ class Playback:
             self._resume(next(one for one in reversed(self._checkpoints) if one.t_ns <= t_ns))
         while self._ahead_next is not None and self._ahead_next.t_recv_ns <= t_ns:
             self.run_ahead()
+        self._hear(t_ns + 1)
+
+    def _hear(self, before_ns: int) -> None:
+        """Feed the estimator what visitors said before a time: of what comes at one time that is always the last."""
+        while self._said_fed < len(self._said) and self._said[self._said_fed].t_recv_ns < before_ns:
+            self.pipeline.step(self._said[self._said_fed])
+            self._said_fed += 1
 
     @property
     def t_next_ns(self) -> int | None:
@@ -156,9 +163,7 @@ class Playback:
             return
         # never between two messages of one time: going back to that time would feed the first of them twice
         is_later = measurement.t_recv_ns > self._t_fed_ns
-        while self._said_fed < len(self._said) and self._said[self._said_fed].t_recv_ns < measurement.t_recv_ns:
-            self.pipeline.step(self._said[self._said_fed])
-            self._said_fed += 1
+        self._hear(measurement.t_recv_ns)
         if is_later and measurement.t_recv_ns - self._checkpoints[-1].t_ns >= CHECKPOINT_S * 1e9:
             state = (self.pipeline.snapshot(), self._upright.snapshot())
             self._checkpoints.append(_Checkpoint(measurement.t_recv_ns, *state))

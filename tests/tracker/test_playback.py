@@ -10,7 +10,7 @@ import pytest
 from tracker.errors import InputError
 from tracker.estimator import Estimator
 from tracker.estimators import build
-from tracker.measurements import Frame, Measurement, Outcome, Retraction, Sighting, Standpoint
+from tracker.measurements import Frame, Measurement, Outcome, Retraction, Said, Sighting, Standpoint
 from tracker.pictures import ArrayPicture
 from tracker.pipeline import Pipeline
 from tracker.playback import Playback, Shown
@@ -186,6 +186,24 @@ def test_a_word_taken_back_leaves_the_walk_as_it_was(recorded: Recorded) -> None
     rest = _run(playback)
     assert len(rest) > 40
     assert all(_key(shown) == silent[shown.frame.frame_id] for shown in rest)
+
+
+def test_what_is_said_at_one_place_again_and_again_is_all_heard(recorded: Recorded) -> None:
+    """Though the estimator has run on after each word, and must come back for the next."""
+    playback = Playback(recorded, START_NS, _listening, Upright(RIG))
+    playback.choose("gps-imu/precise")
+    playback.go_to(START_NS + 8_000_000_000)
+    shown = playback.step()
+    assert shown is not None
+    t_ns = shown.frame.t_ns
+    place = Standpoint(t_ns, 0, (1.0, 1.0, 1.65), 0.5)
+    words: list[Said] = [recorded.landmark(t_ns), place, *(Retraction(t_ns, 0) for _ in range(3))]
+    outcomes = []
+    for word in words:
+        outcomes.append(playback.say(word))
+        for _ in range(500):
+            playback.run_ahead()
+    assert outcomes == [Outcome.USED] * 4 + [Outcome.REJECTED_STALE]
 
 
 def test_threads_change_nothing(recorded: Recorded) -> None:
