@@ -272,7 +272,9 @@ def test_the_precise_estimator_measures_by_the_ground_itself(wall: Path, tmp_pat
     """Its height is known to decimetres and has a velocity, which a pose that is put onto the ground has not."""
     with watching(wall, ReplaySettings("gps-imu/precise", looping=True), tmp_path) as watcher:
         posed = [meta for meta in watcher.frames(50) if meta.pose_valid]
-    last = posed[-1]
+    last = max(
+        posed, key=lambda meta: meta.position_s
+    )  # a full machine leaves pictures out, and the walk begins anew meanwhile
     ground_z_m = build_terrain(load_site(SITE)).ground_z_m
     assert last.T_site_cam[2, 3] - ground_z_m(*last.T_site_cam[:2, 3]) == pytest.approx(EYES_M, abs=0.1)
     assert last.cov[2, 2] < 0.3**2
