@@ -159,7 +159,7 @@ def test_a_recording_that_this_server_has_no_place_for_is_refused_with_the_remed
 @pytest.mark.parametrize("width_px", [390, 800, 1280])
 def test_nothing_runs_off_the_page(replay: ArPage, width_px: int) -> None:
     replay.page.set_viewport_size({"width": width_px, "height": 800})
-    assert replay.ask("document.documentElement.scrollWidth") <= width_px
+    replay.until(f"document.documentElement.scrollWidth <= {width_px}")
     for control in ("#play", "#step-on", "#loop", "#speed", "#estimator", "#help-open", "#taking-open", "#open"):
         box = replay.page.locator(control).bounding_box()
         assert box is not None, control
