@@ -6,6 +6,8 @@ import sys
 from collections.abc import Mapping
 from typing import Final
 
+import msgspec
+
 #: What a child is told of our environment; nothing of `AGORA_…`.
 _PASSED_ON: Final = ("PATH", "HOME", "LANG", "LC_ALL", "TMPDIR", "PYTHONPATH", "VIRTUAL_ENV")
 _OPEN_FILES: Final = 256
@@ -30,6 +32,12 @@ def confine(memory_bytes: int, cpu_s: int | None = None) -> None:
         hard = resource.getrlimit(kind)[1]
         least = limit if hard == resource.RLIM_INFINITY else min(limit, hard)
         resource.setrlimit(kind, (least, least))
+
+
+def tell(answer: msgspec.Struct) -> None:
+    """Say something to whoever began this process, in a line of JSON."""
+    sys.stdout.write(msgspec.json.encode(answer).decode() + "\n")
+    sys.stdout.flush()
 
 
 def command(module: str, *arguments: str) -> list[str]:

@@ -13,7 +13,7 @@ from typing import Final, Literal
 
 import msgspec
 
-from server.confinement import confine
+from server.confinement import confine, tell
 
 LONGEST_JOB: Final = 64 * 1024
 
@@ -57,7 +57,7 @@ def _play(job: ReplayJob) -> None:
     )
     try:
         replay.start(job.url, job.token, job.trust)
-        _answer(Answer())
+        tell(Answer())
         stop = Event()
         Thread(target=_wait_for_the_end, args=(stop,), name="stdin", daemon=True).start()
         while not stop.wait(0.2):
@@ -72,20 +72,15 @@ def _wait_for_the_end(stop: Event) -> None:
     stop.set()
 
 
-def _answer(answer: Answer) -> None:
-    sys.stdout.write(msgspec.json.encode(answer).decode() + "\n")
-    sys.stdout.flush()
-
-
 def _main() -> int:
     confine(int(sys.argv[1]))
     try:
         job = msgspec.json.decode(sys.stdin.buffer.readline(LONGEST_JOB), type=ReplayJob)
         _play(job)
     except MemoryError:
-        _answer(Answer("Replaying this walk takes more memory than it may."))
+        tell(Answer("Replaying this walk takes more memory than it may."))
     except Exception as exc:  # the server tells whoever watches, and whoever asked
-        _answer(Answer(str(exc).replace(job.log, "The walk") or type(exc).__name__))
+        tell(Answer(str(exc).replace(job.log, "The walk") or type(exc).__name__))
     else:
         return 0
     return 1

@@ -1,17 +1,12 @@
 """Replays of uploaded walks: a session and a process each, however many of one walk. For one event loop."""
 
-import asyncio
 import logging
-import subprocess
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Literal
 
-import msgspec
-
-from server.confinement import command, environment
+from server.confined import Process, ask, begin, end, hear
 from server.errors import ReplayRefused, ServerFull
 from server.log_store import LogStore
 from server.replay_process import Answer, ReplayJob
@@ -21,13 +16,13 @@ _logger = logging.getLogger(__name__)
 
 #: From its start to its answer: Python's libraries, the site's ground, one reading of the walk.
 _START_S: Final = 120.0
-_FAREWELL_S: Final = 3.0
+_FAILED: Final = Answer("Replaying this walk failed.")
 
 
 @dataclass
 class _Running:
     log: str
-    process: "subprocess.Popen[bytes]"
+    process: Process
     t_watched_ns: int
 
 
@@ -112,7 +107,7 @@ class Replays:
         running = self._running.pop(name, None)
         if running is None:
             return
-        _end(running.process)
+        end(running.process)
         self._end_session(name, reason)
         _logger.info("a replay ended", extra={"session": name, "log": running.log, "why": reason})
 
@@ -137,28 +132,19 @@ class Replays:
     def close(self) -> None:
         """End all processes."""
         for running in self._running.values():
-            _end(running.process)
+            end(running.process)
         self._running.clear()
 
     # -----------------------------------------------------------------------------------------------------------------
 
-    async def _launch(self, job: ReplayJob) -> "subprocess.Popen[bytes]":
-        process = subprocess.Popen(
-            command("server.replay_process", str(self._memory_bytes)),
-            env=environment(),
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-        )
+    async def _launch(self, job: ReplayJob) -> Process:
+        process = begin("server.replay_process", str(self._memory_bytes))
         try:
-            answer = await asyncio.wait_for(asyncio.to_thread(_ask, process, job), _START_S)
-        except BaseException as exc:
-            process.kill()
-            if isinstance(exc, TimeoutError):
-                raise ReplayRefused("The walk took too long to begin.") from exc
-            raise
+            answer = await ask(process, job, Answer, _START_S) or _FAILED
+        except TimeoutError as exc:
+            raise ReplayRefused("The walk took too long to begin.") from exc
         if answer.error is not None:
-            _end(process)
+            end(process)
             raise ReplayRefused(answer.error)
         return process
 
@@ -174,31 +160,6 @@ class Replays:
             self._sessions.end(name, ENDED, reason)
 
 
-def _ask(process: "subprocess.Popen[bytes]", job: ReplayJob) -> Answer:
-    assert process.stdin is not None
-    assert process.stdout is not None
-    with suppress(BrokenPipeError):
-        process.stdin.write(msgspec.json.encode(job) + b"\n")
-        process.stdin.flush()
-    try:
-        return msgspec.json.decode(process.stdout.readline(64 * 1024), type=Answer)
-    except msgspec.DecodeError:
-        return Answer("Replaying this walk failed.")
-
-
-def _last_words(process: "subprocess.Popen[bytes]") -> str:
-    assert process.stdout is not None
-    try:
-        answer = msgspec.json.decode(process.stdout.readline(64 * 1024), type=Answer)
-    except msgspec.DecodeError:
-        answer = Answer()
-    return answer.error or "The replay has ended."
-
-
-def _end(process: "subprocess.Popen[bytes]") -> None:
-    for pipe in (process.stdin, process.stdout):
-        if pipe is not None:
-            with suppress(OSError):
-                pipe.close()
-    process.kill()  # it holds nothing that would want to be saved
-    process.wait(_FAREWELL_S)
+def _last_words(process: Process) -> str:
+    answer = hear(process, Answer)
+    return (answer and answer.error) or "The replay has ended."

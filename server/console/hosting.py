@@ -3,29 +3,24 @@
 import asyncio
 import logging
 import secrets
-import subprocess
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from time import monotonic
 from typing import Final
 
-import msgspec
-
-from server.confinement import command, environment
+from server.confined import Process, ask, begin, end
 from server.console.process import ConsoleAnswer, ConsoleJob
 from server.errors import ConsoleUnavailable
 
 _logger = logging.getLogger(__name__)
 
 _START_S: Final = 60.0
-_FAREWELL_S: Final = 3.0
 _IDLE_S: Final = 300.0
 #: Of address space, most of which is never touched: threads' stacks and libraries.
 _MEMORY_BYTES: Final = 6_000_000_000
 _SECRET_BYTES: Final = 32
-_FAILED: Final = "The console did not start."
+_FAILED: Final = ConsoleAnswer(error="The console did not start.")
 
 
 @dataclass(frozen=True)
@@ -42,7 +37,7 @@ class Link:
 
 @dataclass(frozen=True)
 class _Console:
-    process: "subprocess.Popen[bytes]"
+    process: Process
     port: int
     secret: str
 
@@ -91,47 +86,17 @@ class ConsoleHost:
         """End the console, if it runs."""
         console, self._console = self._console, None
         if console is not None:
-            _end(console.process)
+            end(console.process)
 
     async def _launch(self) -> _Console:
         link, secret = self._link(), secrets.token_urlsafe(_SECRET_BYTES)
         job = ConsoleJob(url=link.url, token=link.token, trust=link.trust, site=str(self._site), secret=secret)
-        process = subprocess.Popen(
-            command("server.console.process", str(_MEMORY_BYTES)),
-            env=environment(),
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-        )
+        process = begin("server.console.process", str(_MEMORY_BYTES))
         try:
-            answer = await asyncio.wait_for(asyncio.to_thread(_ask, process, job), _START_S)
-        except BaseException as exc:
-            process.kill()
-            if isinstance(exc, TimeoutError):
-                raise ConsoleUnavailable("The console took too long to start: try again.") from exc
-            raise
+            answer = await ask(process, job, ConsoleAnswer, _START_S) or _FAILED
+        except TimeoutError as exc:
+            raise ConsoleUnavailable("The console took too long to start: try again.") from exc
         if answer.error is not None:
-            _end(process)
+            end(process)
             raise ConsoleUnavailable(answer.error)
         return _Console(process, answer.port, secret)
-
-
-def _ask(process: "subprocess.Popen[bytes]", job: ConsoleJob) -> ConsoleAnswer:
-    assert process.stdin is not None
-    assert process.stdout is not None
-    with suppress(BrokenPipeError):
-        process.stdin.write(msgspec.json.encode(job) + b"\n")
-        process.stdin.flush()
-    try:
-        return msgspec.json.decode(process.stdout.readline(64 * 1024), type=ConsoleAnswer)
-    except msgspec.DecodeError:
-        return ConsoleAnswer(error=_FAILED)
-
-
-def _end(process: "subprocess.Popen[bytes]") -> None:
-    for pipe in (process.stdin, process.stdout):
-        if pipe is not None:
-            with suppress(OSError):
-                pipe.close()
-    process.kill()  # it holds nothing that would want to be saved
-    process.wait(_FAREWELL_S)

@@ -19,7 +19,7 @@ from typing import Any, Final
 
 import msgspec
 
-from server.confinement import confine
+from server.confinement import confine, tell
 
 LONGEST_JOB: Final = 64 * 1024
 
@@ -78,7 +78,7 @@ def _run(job: ConsoleJob) -> None:
         server = viser.ViserServer("127.0.0.1", 0, label="Agora", verbose=False)
     try:
         running = Running(server, load_site(Path(job.site)), job.url, job.token, job.trust)
-        _answer(ConsoleAnswer(port=server.get_port()))
+        tell(ConsoleAnswer(port=server.get_port()))
         asyncio.run(_until_the_end(running.run))
     finally:
         with redirect_stdout(StringIO()):
@@ -103,17 +103,12 @@ async def _until_the_end(run: Callable[[], Any]) -> None:
         task.result()
 
 
-def _answer(answer: ConsoleAnswer) -> None:
-    sys.stdout.write(msgspec.json.encode(answer).decode() + "\n")
-    sys.stdout.flush()
-
-
 def _main() -> int:
     confine(int(sys.argv[1]))
     try:
         _run(msgspec.json.decode(sys.stdin.buffer.readline(LONGEST_JOB), type=ConsoleJob))
     except Exception as exc:  # the server tells whoever asked for the console
-        _answer(ConsoleAnswer(error=str(exc) or type(exc).__name__))
+        tell(ConsoleAnswer(error=str(exc) or type(exc).__name__))
         return 1
     return 0
 

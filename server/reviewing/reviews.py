@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 
 import msgspec
 
-from server.confinement import command, environment
+from server.confined import begin
 from server.errors import LogRefused
 from server.reviewing.jobs import Job, PackJob, Refusal
 
@@ -91,13 +91,7 @@ class Reviews:
             done.exception()  # those who waited have it; nobody may be left who does
 
     def _ask(self, job: Job) -> bytes:
-        process = subprocess.Popen(
-            command("server.reviewing.process", str(self._memory_bytes), str(_CPU_S)),
-            env=environment(),
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-        )
+        process = begin("server.reviewing.process", str(self._memory_bytes), str(_CPU_S))
         self._processes.add(process)
         try:
             answer, _ = process.communicate(msgspec.json.encode(job) + b"\n", timeout=_WALL_S)

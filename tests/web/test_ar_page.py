@@ -17,7 +17,7 @@ pytestmark = pytest.mark.browser
 _STATS = {
     *("framesDrawn", "posesDrawn", "mismatchedFrames", "lastFrameId", "lastPoseFrameId", "poseAgeMs"),
     *("motionModel", "estimator", "overlay", "drawCalls", "triangles", "occluders"),
-    *("effort", "drawMs", "sun", "gain"),
+    *("effort", "drawMs", "sun", "gain", "position_s"),
 }
 _SAMPLE = """(count) => new Promise((resolve) => {
     const seen = [];

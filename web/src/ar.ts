@@ -25,6 +25,7 @@ import { askedName, newestName } from "./session";
 import { type ShareRequest, Sharing } from "./sharing";
 import { parseSite, type Site } from "./site";
 import { Link } from "./socket";
+import { publishViewer } from "./support";
 import { type Audience, fieldOf, Viewer } from "./viewer";
 import { type FrameMessage, magicOf } from "./wire";
 import { type Connection, newsOf } from "./words";
@@ -113,7 +114,7 @@ class Page {
     this.link = new Link(url.href, {
       connection: (state) => {
         this.connection = state;
-        if (state === "open") this.hud.age.reset();
+        if (state === "open") this.viewer.age.reset();
       },
       text: (text) => this.text(text),
       binary: (bytes) => (magicOf(bytes) === "AGF1" ? this.viewer.take(bytes) : this.viewer.garbled(bytes)),
@@ -152,7 +153,7 @@ class Page {
     const { frame, locked } = viewer;
     if (frame) this.hmd?.turn(locked?.headingKnown ? locked.T_site_cam : null, fieldOf(frame), now_ms);
     const playing = this.session?.playback?.playing ?? true;
-    this.hud.show(frame, playing, now_ms);
+    this.hud.show(frame, this.viewer.age.at(now_ms), playing, now_ms);
     this.hud.advise({
       style: viewer.overlay.style,
       nearEdge: viewer.overlay.nearEdge,
@@ -188,18 +189,17 @@ class Page {
         return page.align.holds;
       },
       done: (frameId) => this.link?.send({ type: "ack", frame_id: frameId }),
-      drawn: (frame, arrived_ms, now_ms) => this.drawn(frame, arrived_ms, now_ms),
+      drawn: (frame, now_ms) => this.drawn(frame, now_ms),
       back: (longAway) => {
         if (longAway) this.hud.announce(say("ar.back"));
       },
     };
   }
 
-  private drawn(frame: FrameMessage, arrived_ms: number, now_ms: number): void {
+  private drawn(frame: FrameMessage, now_ms: number): void {
     this.guide.show(frame, this.viewer.overlay);
     this.choices.tellSun(this.viewer.look.sun);
     this.hud.rate.count(now_ms);
-    this.hud.age.drawn(frame.t_sent_ns, arrived_ms);
     this.bar.at(frame.position_s);
     this.align.drawn(frame);
     this.firstFrame();
@@ -274,37 +274,11 @@ class Page {
   }
 }
 
-/** What tests and support see: read-only but for `mark` and `setPast`. */
+/** What tests of this page see besides. */
 function publish(page: Page): void {
   const { viewer } = page;
-  const api = {
-    ready: page.ready,
-    stats: () => ({
-      framesDrawn: viewer.framesDrawn,
-      posesDrawn: viewer.posesDrawn,
-      mismatchedFrames: viewer.mismatched,
-      lastFrameId: viewer.frame?.frameId ?? null,
-      lastPoseFrameId: viewer.pose?.frameId ?? null,
-      poseAgeMs: page.hud.age.at(performance.now()),
-      motionModel: viewer.pose?.motionModel ?? null,
-      estimator: viewer.pose?.estimator ?? null,
-      overlay: viewer.overlay.style,
-      drawCalls: viewer.composite.cost.calls,
-      triangles: viewer.composite.cost.triangles,
-      occluders: viewer.square?.hasOccluders ?? false,
-      effort: viewer.look.effort.name,
-      drawMs: viewer.look.usual_ms,
-      sun: viewer.look.sun,
-      gain: viewer.composite.gain,
-    }),
-    project: (point: Vector3) => viewer.project(point),
-    pose: () => {
-      const { pose } = viewer;
-      return pose && { t_ns: pose.t_ns, frameId: pose.frameId, T_site_cam: pose.T_site_cam, cov: pose.covariance };
-    },
-    session: () => page.session,
+  publishViewer(page, {
     time: (count: number) => viewer.look.time(count),
-    setPast: (share: number) => viewer.setPast(share),
     debugTargets: (points: Vector3[], colours: string[], hideable = false) => {
       viewer.composite.mark(
         points.map((point) => transform(T_gltf_site, point)),
@@ -313,9 +287,7 @@ function publish(page: Page): void {
       );
       viewer.setPast(1);
     },
-    readPixels: (x: number, y: number, width: number, height: number) => viewer.composite.read(x, y, width, height),
-  };
-  Object.defineProperty(globalThis, "agora", { value: Object.freeze(api) });
+  });
 }
 
 if (canDraw(element("notice", HTMLElement))) publish(new Page());

@@ -3,13 +3,12 @@
 import { adviceOf, headingWords, placeWords, type Shown } from "./advice";
 import { element, tell } from "./dom";
 import { say } from "./language/speech";
-import { FrameRate, PoseAge } from "./playback";
+import { FrameRate } from "./playback";
 import type { FrameMessage } from "./wire";
 import { motionColour, motionWords, type Situation, sentenceFor } from "./words";
 
 export class Hud {
   readonly rate = new FrameRate();
-  readonly age = new PoseAge();
   private readonly cells = Object.fromEntries(
     ["rate", "age", "position", "heading", "motion", "estimator-now"].map((id) => [id, element(id, HTMLElement)]),
   );
@@ -39,9 +38,8 @@ export class Hud {
   }
 
   /** Show the figures of the picture that is drawn now. */
-  show(frame: FrameMessage | null, playing: boolean, now_ms: number): void {
+  show(frame: FrameMessage | null, age_ms: number | null, playing: boolean, now_ms: number): void {
     this.set("rate", playing ? say("hud.rate_of", { count: this.rate.at(now_ms) }) : say("hud.paused"));
-    const age_ms = this.age.at(now_ms);
     this.set("age", age_ms === null || !playing ? "–" : `${Math.round(age_ms)} ms`);
     const pose = frame?.pose ?? null;
     this.set("position", pose ? placeWords(pose) : say("hud.unknown_yet"));

@@ -9,6 +9,7 @@ import { Look } from "./look";
 import { Square } from "./model";
 import { loadOccluders } from "./occluders";
 import { NOTHING, type Overlay, Overlays, seenThrough } from "./overlay";
+import { PoseAge } from "./playback";
 import type { Site } from "./site";
 import { loadEdges } from "./walkable";
 import { type CameraPose, decodeFrame, type FrameMessage, WireError } from "./wire";
@@ -30,7 +31,7 @@ export interface Audience {
   /** The rig need not wait for this picture any longer: it was drawn, or left out. */
   done(frameId: number): void;
   /** A picture was drawn just now. */
-  drawn(frame: FrameMessage, arrived_ms: number, now_ms: number): void;
+  drawn(frame: FrameMessage, now_ms: number): void;
   /** The browser has the page again. */
   back(longAway: boolean): void;
 }
@@ -44,6 +45,8 @@ interface Waiting {
 export class Viewer {
   readonly composite: Composite;
   readonly look: Look;
+  /** How old the pose of the drawn picture is. */
+  readonly age = new PoseAge();
   readonly overlays = new Overlays();
   frame: FrameMessage | null = null;
   overlay: Overlay = NOTHING;
@@ -245,7 +248,8 @@ export class Viewer {
     if (locked) this.posesDrawn += 1;
     else if (pose) this.mismatched += 1;
     this.lastPicture_ms = now_ms;
-    this.audience.drawn(message, arrived_ms, now_ms);
+    this.age.drawn(message.t_sent_ns, arrived_ms);
+    this.audience.drawn(message, now_ms);
     this.audience.done(message.frameId);
   }
 }

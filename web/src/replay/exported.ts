@@ -4,11 +4,11 @@ import "../everyone";
 import "../style.css";
 import "./replay.css";
 import { canDraw, element, publishNothing } from "../dom";
+import { publishViewer } from "../support";
 import { Inlined } from "./inlined";
 import { ReplayPage } from "./page";
-import { publish } from "./support";
 
 document.body.classList.add("alone");
 const [facts, frames] = ["walk-facts", "walk-frames"].map((id) => element(id, HTMLScriptElement).text);
-if (canDraw(element("notice", HTMLElement))) publish(new ReplayPage(new Inlined(facts ?? "", frames ?? "")));
+if (canDraw(element("notice", HTMLElement))) publishViewer(new ReplayPage(new Inlined(facts ?? "", frames ?? "")));
 else publishNothing();
