@@ -1,9 +1,10 @@
 /** Beside the walkers: everybody who walks now is shown in the square, can be followed, and is told who else looks on. */
 
 import { Group } from "three";
+import type { Directory } from "../browse/directory";
 import { poseOf } from "../browse/eye";
 import type { World } from "../browse/world";
-import { parseSessions, type Session } from "../protocol";
+import type { Session } from "../protocol";
 import { Escort, type Way } from "./gaze";
 import { Glide } from "./glide";
 import { Guest } from "./guest";
@@ -11,7 +12,6 @@ import { Looks } from "./looks";
 import { Others } from "./others";
 import { Panel } from "./panel";
 
-const LOOK_AGAIN_MS = 3000;
 /** The newest walks: more would need more connections than a phone should hold. */
 const MOST_WALKS = 6;
 
@@ -31,6 +31,7 @@ export class Beside {
   constructor(
     private readonly world: World,
     private readonly eyeHeight_m: number,
+    directory: Directory,
   ) {
     this.place.add(this.others.group);
     world.guests.add(this.place);
@@ -41,7 +42,10 @@ export class Beside {
     });
     world.eachPicture((picture_ms) => this.turn(picture_ms));
     document.addEventListener("visibilitychange", () => this.tellLook(document.hidden ? null : undefined));
-    void this.look();
+    directory.listen((found) => {
+      // without a server who is shown stays, and says of itself that nothing comes
+      if (found !== "no server") this.take(found === "hidden" ? [] : found);
+    });
   }
 
   /** Of the walker that one is with, as `agora.stats()` gives it. */
@@ -74,17 +78,6 @@ export class Beside {
             },
           ],
     );
-  }
-
-  /** Look which walks there are, and go on looking. */
-  private async look(): Promise<void> {
-    try {
-      const answer = await fetch("/api/sessions");
-      this.take(answer.ok ? parseSessions(await answer.json()) : []);
-    } catch {
-      // no server just now: who is shown stays, and says of itself that nothing comes
-    }
-    window.setTimeout(() => void this.look(), LOOK_AGAIN_MS);
   }
 
   private take(sessions: readonly Session[]): void {

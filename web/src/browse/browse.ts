@@ -11,6 +11,7 @@ import { contains, type Place } from "../plan";
 import type { Monument, Site, View } from "../site";
 import { loadGround } from "../walkable";
 import { hashOf, readAddress, type Shown } from "./address";
+import type { Directory } from "./directory";
 import { type Epoch, Epochs } from "./epochs";
 import { type Eye, looking } from "./eye";
 import { overlooking } from "./finding";
@@ -51,6 +52,7 @@ export class Browse {
   constructor(
     readonly site: Site,
     shown: Shown,
+    directory: Directory,
   ) {
     this.stage = new Stage(element("view", HTMLCanvasElement), element("stick", HTMLElement), site.eye_height_m);
     const { explorer } = this.stage;
@@ -89,7 +91,7 @@ export class Browse {
       return false;
     });
     const isAlone = new URLSearchParams(location.search).get("walkers") === "0";
-    this.beside = isAlone ? null : new Beside(this.stage, site.eye_height_m);
+    this.beside = isAlone ? null : new Beside(this.stage, site.eye_height_m, directory);
     new Narrator(() => this.stage.standpoint).learn(site.monuments);
     fillLegend(element("legend", HTMLElement), site);
     fillKeys(element("keys", HTMLElement));

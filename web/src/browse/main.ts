@@ -8,8 +8,10 @@ import { languages, say } from "../language/speech";
 import { parseSite, type Site } from "../site";
 import { readAddress } from "./address";
 import { Browse } from "./browse";
+import { Directory } from "./directory";
 import { showWalks } from "./walks";
 
+const directory = new Directory();
 let browse: Browse | null = null;
 
 /** Return the site, named on the page. */
@@ -29,7 +31,7 @@ async function show(): Promise<void> {
   try {
     const site = await loadSite();
     const shown = readAddress(location.search, location.hash);
-    browse = new Browse(site, shown);
+    browse = new Browse(site, shown, directory);
     await browse.start(shown);
   } catch (error) {
     tell(element("notice", HTMLElement), say("trouble.model"));
@@ -54,6 +56,6 @@ function publish(ready: Promise<void>): void {
   Object.defineProperty(globalThis, "agora", { value: Object.freeze(api) });
 }
 
-void showWalks();
+directory.listen(showWalks);
 if (canDraw(element("notice", HTMLElement))) publish(show());
 else publishNothing(showPlan());

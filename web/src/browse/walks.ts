@@ -3,25 +3,22 @@
 import { element, tell } from "../dom";
 import { say } from "../language/speech";
 import { clockText } from "../playback";
-import { parseSessions, type Session } from "../protocol";
+import type { Session } from "../protocol";
+import type { Found } from "./directory";
 
-const LOOK_AGAIN_MS = 3000;
-
-/** Show the walks, and go on looking for new ones. */
-export async function showWalks(): Promise<void> {
+/** Show the walks that are found. */
+export function showWalks(found: Found): void {
   const note = element("walks-note", HTMLElement);
-  try {
-    const answer = await fetch("/api/sessions");
-    element("enter", HTMLElement).hidden = answer.status !== 401;
-    const links = answer.status === 401 ? [] : parseSessions(await answer.json()).map(linkTo);
-    const walks = element("walks", HTMLElement);
-    // a list that has not changed stays, and so does the focus on one of its links
-    if (links.map((link) => link.outerHTML).join("") !== walks.innerHTML) walks.replaceChildren(...links);
-    tell(note, links.length > 0 ? null : say("live.none"));
-  } catch {
+  if (found === "no server") {
     tell(note, say("live.no_server"));
+    return;
   }
-  window.setTimeout(() => void showWalks(), LOOK_AGAIN_MS);
+  element("enter", HTMLElement).hidden = found !== "hidden";
+  const links = found === "hidden" ? [] : found.map(linkTo);
+  const walks = element("walks", HTMLElement);
+  // a list that has not changed stays, and so does the focus on one of its links
+  if (links.map((link) => link.outerHTML).join("") !== walks.innerHTML) walks.replaceChildren(...links);
+  tell(note, links.length > 0 ? null : say("live.none"));
 }
 
 function linkTo(session: Session): HTMLAnchorElement {
