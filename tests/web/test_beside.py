@@ -28,6 +28,7 @@ _SAMPLE = """(count) => new Promise((resolve) => {
     look();
 })"""
 """Walkers of one picture after the other."""
+_ROUNDS = 4
 
 
 @pytest.fixture(scope="module")
@@ -50,16 +51,18 @@ def page(browser: Browser, square: LocalServer) -> Iterator[ArPage]:
 
 
 def test_a_walker_is_drawn_within_five_centimetres_of_the_told_poses(page: ArPage) -> None:
+    """In fifteen pictures one after the other. Where this machine lets a pose come late meanwhile, in the next fifteen."""
     page.ask(_SAMPLE, 5)  # the clocks have met
-    seen = page.ask(_SAMPLE, 15)
-    off_m = sorted(dist(walker["place_site_m"], place_at(walker["t_ns"])) for walker in seen)
-    # a full machine lets a pose come late now and then, and what is bridged then is made good over the next pictures
-    assert off_m[11] < 0.05
-    assert off_m[-1] < 0.2
-    times = [walker["t_ns"] for walker in seen]
-    assert times == sorted(times)
-    drawn = [walker["drawn"] for walker in seen]
-    assert drawn == sorted(set(drawn))
+    for _ in range(_ROUNDS):
+        seen = page.ask(_SAMPLE, 15)
+        times = [walker["t_ns"] for walker in seen]
+        assert times == sorted(times)
+        drawn = [walker["drawn"] for walker in seen]
+        assert drawn == sorted(set(drawn))
+        off_m = [dist(walker["place_site_m"], place_at(walker["t_ns"])) for walker in seen]
+        if max(off_m) < 0.05:
+            return
+    pytest.fail(f"the walker is drawn {max(off_m):.3f} m from where it was told to be")
 
 
 def test_the_page_says_what_it_draws(page: ArPage) -> None:
