@@ -282,7 +282,7 @@ class LiveRig:
         if self._link is None:
             return
         state = self._walk.state
-        self._figures.look((), state.rejected)  # innovations are the fusion thread's own
+        self._figures.look(self._walk.innovations(), state.rejected)
         states = tuple(health.state for health in state.sensors.values())
         if states == self._told and state.t_ns < self._health_due_ns:
             return

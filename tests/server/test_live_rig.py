@@ -192,6 +192,19 @@ def ask(connection: Connection, action: str, value: object) -> dict[str, Any]:
     return text_of(connection, "reply")
 
 
+def test_an_operator_sees_the_innovations_of_a_live_walk(wall: Log, tmp_path: Path) -> None:
+    with watching(wall, tmp_path, estimator="camera-gps-imu/famm") as connection:
+        frame_where(connection, lambda meta: meta.pose_valid)
+        assert ask(connection, "figures", None)["ok"]
+        updates: list[dict[str, Any]] = []
+        while len(updates) < 8:
+            updates += text_of(connection, "figures")["updates"]
+        times_s = [update["t_s"] for update in updates]
+        assert times_s == sorted(set(times_s)), "none is told twice"
+        assert all(0.0 < update["position_m"] < 50.0 for update in updates)
+        assert {update["motion_model"] for update in updates} <= {f"P{p}R{r}" for p in range(3) for r in range(3)}
+
+
 def test_a_landmark_is_pointed_out_and_taken_back(wall: Log, tmp_path: Path) -> None:
     """In a picture that was shown; what is recorded holds both."""
     path = tmp_path / "aligned.mcap"

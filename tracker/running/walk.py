@@ -16,7 +16,7 @@ from types import MappingProxyType
 
 from tracker.blank import blank_picture
 from tracker.errors import MalformedInput
-from tracker.estimator import Pose
+from tracker.estimator import Innovation, Pose
 from tracker.measurements import Frame, ImuSample, Outcome, Said
 from tracker.pipeline import FrontEnd
 from tracker.playback import Shown
@@ -42,6 +42,8 @@ _POSE_S = 1.0 / 30.0
 _SAMES, _SAME_NS = 10, 2_000_000_000
 #: A source has so long to close its device before it is left behind.
 _FAREWELL_S = 3.0
+#: Updates of the filter that are kept for whoever asks: a minute of them.
+_INNOVATIONS = 240
 #: An estimator that fails more often than this in a row is not begun anew.
 _MOST_FAILURES = 5
 
@@ -104,6 +106,7 @@ class LiveWalk:
         self._vision: _LiveVision | None = None
         self._shown: Slot[Shown] = Slot()
         self._latencies, self._poses = Latencies(), Rate()
+        self._innovations: deque[Innovation] = deque(maxlen=_INNOVATIONS)
         self._health: Mapping[str, Health] = _NOBODY
         self._health_due_ns = self._blank_due_ns = 0
         self._blanks = self._failures = 0
@@ -167,6 +170,10 @@ class LiveWalk:
             None if self._recorder is None else self._recorder.state,
         )
 
+    def innovations(self) -> list[Innovation]:
+        """Return the filter's updates since the last call, oldest first; from any one thread."""
+        return [self._innovations.popleft() for _ in range(len(self._innovations))]
+
     def _tell(self, sensor: str, what: str, reason: str) -> None:
         """Take news of a source, on its own thread, for fusion."""
         self._news.append((sensor, what, reason))
@@ -212,6 +219,8 @@ class LiveWalk:
         self.pose = core.pose(t_ns)
         if self.pose is not None:
             self._poses.note(t_ns)
+        if core.pipeline is not None:
+            self._innovations.extend(core.pipeline.innovations())
         for _, measurement in batch.measurements:
             if isinstance(measurement, ImuSample):
                 self._latencies.add((t_ns - measurement.t_recv_ns) * 1e-9)
