@@ -52,10 +52,10 @@ def measure(seconds: float) -> Figures:
     """Run all of it once, so long before each kill."""
     with TemporaryDirectory() as folder, ExitStack() as stack:
         running = stack.enter_context(trio(Path(folder)))
-        rigs = [stack.enter_context(Rig(running.proxy.port, name, MARK * (i + 1))) for i, name in enumerate(_NAMES)]
+        rigs = [stack.enter_context(Rig(running.proxy_port, name, MARK * (i + 1))) for i, name in enumerate(_NAMES)]
         wait(lambda: all(set(server.sessions()) == set(_NAMES) for server in running.servers))
         watchers = [
-            [stack.enter_context(Watcher(server.port, running.proxy.port, name)) for name in _NAMES]
+            [stack.enter_context(Watcher(server.port, running.proxy_port, name)) for name in _NAMES]
             for server in running.servers
         ]
         there, elsewhere = watchers[0], [watcher for at in watchers[1:] for watcher in at]

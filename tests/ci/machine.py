@@ -1,4 +1,4 @@
-"""What the tests need from the machine: a Chromium, OpenGL on EGL, a font and gpsd, found or, by root, installed.
+"""What the tests need from the machine: a Chromium, OpenGL on EGL, a font, gpsd and HAProxy, found or, by root, installed.
 
 `make test` runs this file before pytest. It says nothing and takes under two seconds where everything is there.
 """
@@ -15,6 +15,7 @@ BROWSER_NAMES = ("chromium", "chromium-browser", "google-chrome-stable", "google
 GL_PACKAGES = ("libegl1", "libgl1", "libgl1-mesa-dri")
 FONT_PACKAGES = ("fonts-dejavu-core", "fontconfig")
 GPSD_PACKAGES = ("gpsd", "gpsd-clients", "python3-gps")
+PROXY_PACKAGES = ("haproxy",)
 DOWNLOAD_TIMEOUT_S = 150.0
 """Chromium is 170 MB: over a link slower than 10 Mbit/s the distribution's package is no slower."""
 INSTALL_TIMEOUT_S = 400.0
@@ -64,11 +65,14 @@ def has_font() -> bool:
     return any(path.suffix in {".ttf", ".otf", ".ttc", ".pfb"} for folder in folders for path in folder.rglob("*"))
 
 
+def has_daemon(name: str) -> bool:
+    """Return whether a program is there that may lie where only root's PATH looks."""
+    return shutil.which(name, path=f"{os.environ.get('PATH', '')}:/usr/sbin:/sbin") is not None
+
+
 def has_gpsd() -> bool:
     """Return whether gpsd is there and `gpsfake`, which plays logs to it, starts."""
-    return shutil.which("gpsd", path=f"{os.environ.get('PATH', '')}:/usr/sbin:/sbin") is not None and succeeds(
-        "gpsfake", "--version"
-    )
+    return has_daemon("gpsd") and succeeds("gpsfake", "--version")
 
 
 def is_root() -> bool:
@@ -130,6 +134,14 @@ def get_gpsd(say: Console) -> bool:
     return install(*GPSD_PACKAGES) and has_gpsd()
 
 
+def get_proxy(say: Console) -> bool:
+    """Make sure of HAProxy."""
+    if has_daemon("haproxy"):
+        return True
+    say.print("agora: installing HAProxy for the tests")
+    return install(*PROXY_PACKAGES) and has_daemon("haproxy")
+
+
 def main() -> int:
     """Get what is missing; return 3 where root could not, and 0 otherwise: then the tests in question are skipped as "not root"."""
     say = Console(stderr=True, highlight=False, soft_wrap=True)
@@ -138,6 +150,7 @@ def main() -> int:
         (get_font(say), "a font", FONT_PACKAGES),
         (get_browser(say), "a browser", ("chromium",)),
         (get_gpsd(say), "gpsd", GPSD_PACKAGES),
+        (get_proxy(say), "HAProxy", PROXY_PACKAGES),
     )
     missing = [(what, packages) for there, what, packages in needs if not there]
     for what, packages in missing:

@@ -54,7 +54,13 @@ def test_what_is_missing_is_said_in_one_sentence(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], root: bool, code: int
 ) -> None:
     monkeypatch.setattr(machine, "is_root", lambda: root)
-    for get, there in (("get_open_gl", True), ("get_font", True), ("get_browser", False), ("get_gpsd", True)):
+    for get, there in (
+        ("get_open_gl", True),
+        ("get_font", True),
+        ("get_browser", False),
+        ("get_gpsd", True),
+        ("get_proxy", True),
+    ):
         monkeypatch.setattr(machine, get, lambda _say, there=there: there)
     assert machine.main() == code
     assert capsys.readouterr().err == "agora: the tests need a browser: run as root: apt-get install chromium\n"

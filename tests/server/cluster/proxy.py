@@ -1,59 +1,66 @@
-"""A proxy as it stands before several servers: each connection goes to the first of them that answers."""
+"""HAProxy as docs/scale.md sets it before several servers, but without TLS, and with the first one that is there preferred."""
 
+import os
+import re
+import shutil
 import socket
-import threading
-from contextlib import suppress
-from types import TracebackType
-from typing import Self
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from time import monotonic, sleep
+
+import pytest
+
+from tests.server.cluster.guide import shown
+from tests.server.cluster.nodes import free_ports
+
+_STARTS_WITHIN_S = 20.0
 
 
-class Proxy:
-    """Listens on a port of its own."""
-
-    def __init__(self, ports: list[int]) -> None:
-        self._ports = ports
-        self._listener = socket.create_server(("127.0.0.1", 0))
-        self.port: int = self._listener.getsockname()[1]
-        self._sockets: list[socket.socket] = []
-        self._thread = threading.Thread(target=self._accept, daemon=True)
-        self._thread.start()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        for one in (self._listener, *self._sockets):
-            with suppress(OSError):
-                one.shutdown(socket.SHUT_RDWR)
-            one.close()
-        self._thread.join()
-
-    def _accept(self) -> None:
-        with suppress(OSError):
-            while True:
-                near, _ = self._listener.accept()
-                far = self._first()
-                if far is None:
-                    near.close()
-                    continue
-                self._sockets += [near, far]
-                for one, other in ((near, far), (far, near)):
-                    threading.Thread(target=_pump, args=(one, other), daemon=True).start()
-
-    def _first(self) -> socket.socket | None:
-        for port in self._ports:
-            with suppress(OSError):
-                far = socket.create_connection(("127.0.0.1", port), 1.0)
-                far.settimeout(None)  # who watches says nothing for long
-                return far
-        return None
+def haproxy() -> str:
+    """Return the program; a test that needs it is skipped where it is missing and cannot be installed."""
+    path = shutil.which("haproxy", path=f"{os.environ.get('PATH', '')}:/usr/sbin:/sbin")
+    if path is None:
+        pytest.skip("not root")
+    return path
 
 
-def _pump(one: socket.socket, other: socket.socket) -> None:
-    with suppress(OSError):
-        while data := one.recv(65536):
-            other.sendall(data)
-    with suppress(OSError):
-        other.shutdown(socket.SHUT_RDWR)
+@contextmanager
+def proxy(folder: Path, ports: list[int]) -> Iterator[int]:
+    """Run it before servers at these ports, and give its own."""
+    port = free_ports(1)[0]
+    path = folder / "haproxy.cfg"
+    path.write_text(_settings(port, ports))
+    process = subprocess.Popen([haproxy(), "-db", "-f", str(path)], stderr=subprocess.PIPE, text=True)
+    try:
+        _await(process, port)
+        yield port
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def _settings(port: int, ports: list[int]) -> str:
+    text, _, _ = shown("", "defaults").partition("    server s1")
+    for is_, becomes in (
+        (r"bind .*", f"bind 127.0.0.1:{port}"),
+        (r"balance leastconn", "balance first"),
+        (r"agora\.example", "127.0.0.1"),
+        (r" ssl verify .*", ""),
+    ):
+        text, changed = re.subn(is_, becomes, text)
+        assert changed, is_
+    return text + "".join(f"    server s{i} 127.0.0.1:{one}\n" for i, one in enumerate(ports, 1))
+
+
+def _await(process: "subprocess.Popen[str]", port: int) -> None:
+    deadline = monotonic() + _STARTS_WITHIN_S
+    while monotonic() < deadline:
+        if process.poll() is not None:
+            _, said = process.communicate()
+            raise RuntimeError(said)
+        with suppress(OSError), socket.create_connection(("127.0.0.1", port), 1.0):
+            return
+        sleep(0.02)
+    raise TimeoutError("HAProxy does not listen")

@@ -16,10 +16,10 @@ def test_a_node_and_then_a_server_are_killed(tmp_path: Path) -> None:
     """How long poses stay away is measured by `tests/benchmarks/failover.py`."""
     with ExitStack() as stack:
         running = stack.enter_context(trio(tmp_path))
-        rigs = [stack.enter_context(Rig(running.proxy.port, name, MARK * (i + 1))) for i, name in enumerate(NAMES)]
+        rigs = [stack.enter_context(Rig(running.proxy_port, name, MARK * (i + 1))) for i, name in enumerate(NAMES)]
         wait(lambda: all(_told(server) for server in running.servers))
         watchers = [
-            stack.enter_context(Watcher(server.port, running.proxy.port, name))
+            stack.enter_context(Watcher(server.port, running.proxy_port, name))
             for server in running.servers
             for name in NAMES
         ]

@@ -25,7 +25,7 @@ from server.tokens import Issued
 from server.wire import POSE_BYTES, decode_pose, encode_pose
 from tests.server.cluster.certificates import make_certificates
 from tests.server.cluster.nodes import Node, nodes
-from tests.server.cluster.proxy import Proxy
+from tests.server.cluster.proxy import proxy
 from tests.server.wire_examples import example_pose
 
 AGORA = str(Path(sys.executable).with_name("agora"))
@@ -78,7 +78,8 @@ class Trio:
 
     nodes: list[Node]
     servers: list[Served]
-    proxy: Proxy
+    proxy_port: int
+    """Of HAProxy before them."""
 
 
 @contextmanager
@@ -105,7 +106,7 @@ def trio(folder: Path) -> Iterator[Trio]:
         servers = [Served(process, journal) for process, journal in started]
         for server in servers:
             wait(lambda server=server: server.get("ready").status_code == 200)
-        yield Trio(running, servers, stack.enter_context(Proxy([server.port for server in servers])))
+        yield Trio(running, servers, stack.enter_context(proxy(folder, [server.port for server in servers])))
 
 
 @contextmanager
