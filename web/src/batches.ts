@@ -19,6 +19,9 @@ import { isMergeable, type Laid, merged } from "./merge";
 import type { Surfaces } from "./surfaces";
 import { type Extras, Thing } from "./thing";
 
+/** So long the page's thread sorts without a pause. */
+const SLICE_MS = 20;
+
 /** Everything of one file. */
 export interface Batches {
   readonly objects: readonly Object3D[];
@@ -29,24 +32,21 @@ export interface Batches {
   find(hit: Intersection): Thing | null;
 }
 
-/** Sort the meshes of a file into batches, everything hidden. */
-export function batched(gltf: GLTF, surfaces: Surfaces): Batches {
-  const sorting = new Sorting(gltf, surfaces);
-  for (const _ of sorting.steps());
-  return sorting.sorted;
-}
-
-/** The same piece by piece: `made` is told of what each piece has brought, and waited for before the next. */
-export async function batchedInTurns(
+/** Sort the meshes of a file into batches, everything hidden, piece by piece: `made` is told of what each has brought, and waited for. */
+export async function batched(
   gltf: GLTF,
   surfaces: Surfaces,
   made: (objects: readonly Object3D[]) => Promise<void>,
 ): Promise<Batches> {
   const sorting = new Sorting(gltf, surfaces);
   let told = 0;
+  let began_ms = performance.now();
   for (const count of sorting.steps()) {
     if (count > told) await made(sorting.sorted.objects.slice(told, count));
     told = count;
+    if (performance.now() - began_ms < SLICE_MS) continue;
+    await new Promise((resolve) => setTimeout(resolve));
+    began_ms = performance.now();
   }
   return sorting.sorted;
 }
@@ -79,10 +79,10 @@ class Sorting {
         if (mesh instanceof InstancedMesh) this.sortCopies(mesh, name, extras);
         else if (mesh instanceof Mesh) this.sort(mesh, mesh.matrixWorld, this.thing(name, extras));
       });
+      yield this.objects.length;
     }
-    yield this.objects.length;
     for (const [material, members] of this.plain) {
-      this.batch(material, members);
+      yield* this.batch(material, members);
       yield this.objects.length;
     }
   }
@@ -180,8 +180,12 @@ class Sorting {
     });
   }
 
-  private batch(material: Material, members: ReadonlyMap<Thing, Laid[]>): void {
-    const geometries = [...members].map(([thing, laid]): [Thing, BufferGeometry] => [thing, merged(laid)]);
+  private *batch(material: Material, members: ReadonlyMap<Thing, Laid[]>): Iterable<number> {
+    const geometries: [Thing, BufferGeometry][] = [];
+    for (const [thing, laid] of members) {
+      geometries.push([thing, merged(laid)]);
+      yield this.objects.length;
+    }
     const total = (count: (geometry: BufferGeometry) => number): number =>
       geometries.reduce((sum, [, geometry]) => sum + count(geometry), 0);
     const vertices = total((geometry) => geometry.getAttribute("position").count);
@@ -203,6 +207,7 @@ class Sorting {
           batch.setColorAt(id, colour);
         },
       });
+      yield this.objects.length;
     }
     const [first] = geometries;
     if (first) this.lay(batch, first[0]);

@@ -13,7 +13,7 @@ import {
   Vector3,
 } from "three";
 import type { GLTF } from "three/addons/loaders/GLTFLoader.js";
-import { type Batches, batched, batchedInTurns } from "./batches";
+import { type Batches, batched } from "./batches";
 import type { Post } from "./browse/post";
 import { EVIDENCE_COLOURS } from "./evidence";
 import { loader } from "./gltf";
@@ -49,7 +49,6 @@ export class Square {
   changed: () => void = () => undefined;
   /** Called when something has come in that should go to the graphics card before the next does. */
   pause: (pictures: readonly Texture[]) => Promise<void> = () => new Promise((resolve) => setTimeout(resolve));
-  private readonly surfaces: Surfaces;
   private readonly light = new Sunlight();
   private readonly files: Batches[] = [];
   private readonly groups = new Map<string, Group>();
@@ -67,13 +66,13 @@ export class Square {
   private constructor(
     private readonly levels: readonly string[],
     first: GLTF,
+    file: Batches,
+    private readonly surfaces: Surfaces,
     groundShare: number,
   ) {
-    this.surfaces = new Surfaces(groundShare);
     this.hideBackdrop = groundShare < 1;
     const extras = (first.asset["extras"] ?? {}) as Readonly<Record<string, unknown>>;
     if (Array.isArray(extras["level_reach_m"])) this.reach_m = extras["level_reach_m"] as number[];
-    const file = batched(first, this.surfaces);
     this.posts = file.posts;
     void this.lay(file.objects);
     this.take(file, levels.length - 1);
@@ -86,7 +85,8 @@ export class Square {
   static async load(levels: readonly string[], groundShare: number): Promise<Square> {
     const first = levels.at(-1);
     if (first === undefined) throw new Error("a model without files");
-    return new Square(levels, await loader.loadAsync(first), groundShare);
+    const [loaded, surfaces] = [await loader.loadAsync(first), new Surfaces(groundShare)];
+    return new Square(levels, loaded, await batched(loaded, surfaces, async () => undefined), surfaces, groundShare);
   }
 
   /** Load the finer levels and the full textures; resolves when all are in, or have failed. */
@@ -222,7 +222,7 @@ export class Square {
         this.changed();
       }
       for (const [level, url] of finer.reverse()) {
-        const file = await batchedInTurns(await loader.loadAsync(url), this.surfaces, (objects) => this.lay(objects));
+        const file = await batched(await loader.loadAsync(url), this.surfaces, (objects) => this.lay(objects));
         this.take(file, level);
         this.update(this.eye);
         this.changed();

@@ -125,6 +125,7 @@ export class Epochs {
     square.showEvidence(this.evidence);
     this.squares.set(epoch, square);
     this.shine(epoch, square);
+    await this.stage.prepare(square);
     // nothing finer is asked for before there is a picture
     void this.stage.drawn().then(() => square.refine());
     return square;

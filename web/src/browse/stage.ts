@@ -14,6 +14,7 @@ import {
 import type { Standpoint } from "../describe";
 import { T_gltf_site, type Vector3 } from "../frames";
 import type { Square } from "../model";
+import { Readying } from "../readying";
 import { Sky } from "../sky";
 import { drawsInSoftware } from "../software";
 import type { Sun } from "../sun";
@@ -33,6 +34,8 @@ const FOG_M = [220, 900] as const;
 const FINEST = 2;
 /** So long after the last motion the finest picture is drawn. */
 const REST_MS = 180;
+/** Without a graphics card what comes in is drawn this often: each picture keeps the next piece waiting. */
+const COMES_EVERY_MS = 1000;
 
 interface Layer {
   readonly square: Square;
@@ -41,8 +44,8 @@ interface Layer {
   stale: boolean;
   thrown: boolean;
   plain: boolean;
-  /** Whether its finest surfaces are compiled. */
-  compiled: "no" | "soon" | "yes";
+  /** Whether its finest surfaces can be drawn at once. */
+  finest: "no" | "soon" | "yes";
 }
 
 export class Stage implements World {
@@ -54,6 +57,7 @@ export class Stage implements World {
   private readonly layers = new Map<Square, Layer>();
   private readonly turns = new Set<Turn>();
   private readonly veil = new Veil();
+  private readonly readying: Readying;
   private readonly pace: Pace;
   private readonly inSoftware: boolean;
   private below: Layer | null = null;
@@ -68,6 +72,7 @@ export class Stage implements World {
   private compiling = 0;
   private resting: number | null = null;
   private moved_ms = Number.NEGATIVE_INFINITY;
+  private came_ms = Number.NEGATIVE_INFINITY;
   private drawn_ms: number | null = null;
   private cost = { calls: 0, triangles: 0 };
   private pictures = 0;
@@ -89,6 +94,7 @@ export class Stage implements World {
     this.renderer.debug.checkShaderErrors = import.meta.env.DEV; // to ask for errors waits for the compiler
     this.inSoftware = drawsInSoftware(this.renderer);
     this.pace = new Pace(this.inSoftware);
+    this.readying = new Readying(this.renderer);
     // blurring what is behind the panels costs as much as drawing the model
     document.body.classList.toggle("frugal", this.inSoftware);
     this.guests.matrixAutoUpdate = false;
@@ -122,6 +128,14 @@ export class Stage implements World {
     const [e_m, n_m, u_m] = place_site_m;
     const half_rad = Math.atan(Math.tan((this.camera.fov * Math.PI) / 360) * this.camera.aspect);
     return { e_m, n_m, u_m, heading_rad, half_rad };
+  }
+
+  /** Resolves when a square can be drawn without a halt. */
+  async prepare(square: Square): Promise<void> {
+    const layer = this.layer(square);
+    const { plain } = this.pace.step;
+    if (layer.plain !== plain) this.dress(layer, plain);
+    await this.compile(layer);
   }
 
   /** Draw this square, and over it, by that share, another one: from one time to the other. */
@@ -217,12 +231,20 @@ export class Stage implements World {
   }
 
   /** Let what has come in go to the graphics card by and by; without one, nobody waits for each picture. */
-  private pause(pictures: readonly Texture[]): Promise<void> {
-    for (const picture of pictures) this.renderer.initTexture(picture);
+  private async pause(layer: Layer, pictures: readonly Texture[]): Promise<void> {
+    for (const picture of pictures) {
+      await this.readying.idle();
+      this.renderer.initTexture(picture);
+    }
     this.moved_ms = performance.now();
+    if (!layer.plain) await this.compile(layer);
     if (!this.inSoftware) return this.next();
-    this.ask();
-    return new Promise((resolve) => setTimeout(resolve));
+    const now_ms = performance.now();
+    if (now_ms - this.came_ms > COMES_EVERY_MS) {
+      this.came_ms = now_ms;
+      this.ask();
+    }
+    await this.readying.drained();
   }
 
   private get front(): Square | null {
@@ -232,13 +254,13 @@ export class Stage implements World {
   private layer(square: Square): Layer {
     const known = this.layers.get(square);
     if (known) return known;
-    const layer: Layer = { square, sky: new Sky(), stale: true, thrown: false, plain: false, compiled: "no" };
+    const layer: Layer = { square, sky: new Sky(), stale: true, thrown: false, plain: false, finest: "no" };
     this.layers.set(square, layer);
     this.moved_ms = performance.now(); // a first picture that is there soon, then the finest
     square.scene.add(layer.sky.mesh);
     square.scene.fog = new Fog(0, ...FOG_M);
     (square.scene.fog as Fog).color = layer.sky.horizon;
-    square.pause = (pictures) => this.pause(pictures);
+    square.pause = (pictures) => this.pause(layer, pictures);
     square.changed = () => {
       if (this.isDressing) return;
       layer.stale = true;
@@ -297,7 +319,7 @@ export class Stage implements World {
     }
     this.drawn_ms = isMoving ? now_ms : null;
     const isReady = this.isReady();
-    const rests = this.pace.step === BEST || (isReady && now_ms - this.moved_ms >= REST_MS && this.isCompiled());
+    const rests = this.pace.step === BEST || (isReady && now_ms - this.moved_ms >= REST_MS && this.isFinest());
     this.take(rests ? BEST : this.pace.step);
     this.render();
     if (!rests && isReady && this.compiling === 0) this.restLater();
@@ -322,21 +344,26 @@ export class Stage implements World {
   }
 
   /** Whether the finest surfaces can be drawn at once; where not, begin to compile them, and ask again when that is done. */
-  private isCompiled(): boolean {
+  private isFinest(): boolean {
     const layers = [this.below, this.above].filter((layer) => layer !== null);
-    for (const layer of layers.filter(({ compiled }) => compiled === "no")) {
-      layer.compiled = "soon";
+    for (const layer of layers.filter(({ finest }) => finest === "no")) {
+      layer.finest = "soon";
       this.compiling += 1;
       this.dress(layer, false);
-      const done = this.renderer.compileAsync(layer.square.scene, this.camera);
+      const done = this.compile(layer);
       this.dress(layer, true);
       void done.then(() => {
-        layer.compiled = "yes";
+        layer.finest = "yes";
         this.compiling -= 1;
         this.ask();
       });
     }
-    return layers.every(({ compiled }) => compiled === "yes");
+    return layers.every(({ finest }) => finest === "yes");
+  }
+
+  /** Compile it as it is dressed now. */
+  private compile({ square }: Layer): Promise<void> {
+    return this.readying.compile(square.scene, this.camera);
   }
 
   private dress(layer: Layer, plain: boolean): void {
