@@ -34,7 +34,7 @@ _PIECE_NS = 4_000_000
 #: How soon the longest of them is forgotten.
 _FORGET = 0.98
 #: A seek that takes longer shows its picture without a pose meanwhile.
-_PATIENCE_NS = 60_000_000
+_PATIENCE_NS = 30_000_000
 #: A playback later than this has lost its time for good and goes on from where it is, instead of racing after the clock.
 _LATEST_NS = 300_000_000
 
@@ -237,6 +237,9 @@ class Player:
 
     def _turn(self) -> None:
         """Obey a command, or play the next picture when it is due, or work ahead, or wait a little."""
+        if self._state.seeking and self._commands.empty():
+            self._find(_PIECE_NS)
+            return
         t_next_ns = self._playback.t_next_ns
         if self._state.playing and t_next_ns is None:
             self._at_end()
@@ -345,27 +348,34 @@ class Player:
             raise InputError(refused)
 
     def _seek(self, position_s: float) -> None:
-        """Jump: the picture of the place is shown with its pose, for which the estimator may have to run up to there."""
+        """Jump: the picture of the place is shown with its pose, and alone as long as the estimator has not come there.
+
+        It runs up to there between commands: who has jumped too far jumps elsewhere at once.
+        """
         self._playback.go_to(self._start_ns + round(position_s * 1e9))
-        self._state = replace(self._state, position_s=position_s)
-        self._work_it_out()
-        shown = self._playback.step()
+        self._state = replace(self._state, position_s=position_s, seeking=False)
         self._just_sought = True
+        if self._find(_PATIENCE_NS):
+            return
+        self._change(seeking=True)
+        if (bare := self._playback.peek()) is not None:
+            self._show(bare, self._state, True)
+
+    def _find(self, most_ns: int) -> bool:
+        """Run the estimator towards the place that was jumped to, for so long at most; show it and return True there."""
+        until_ns = monotonic_ns() + most_ns
+        while not self._playback.is_known and not self._playback.is_whole:
+            self._playback.run_ahead()
+            if monotonic_ns() > until_ns:
+                return False
+        shown = self._playback.step()
+        position_s = self._state.position_s
         if shown is not None:
             position_s = max(position_s, (shown.frame.t_recv_ns - self._start_ns) * 1e-9)
         self._change(position_s=position_s, seeking=False)
         if shown is not None:
             self._hand_out(shown)
-
-    def _work_it_out(self) -> None:
-        """Run the estimator up to the next picture, which is shown alone where that takes long."""
-        began_ns = monotonic_ns()
-        while not self._playback.is_known and not self._playback.is_whole and not self._stop.is_set():
-            self._playback.run_ahead()
-            if not self._state.seeking and monotonic_ns() - began_ns > _PATIENCE_NS:
-                self._change(seeking=True)
-                if (bare := self._playback.peek()) is not None:
-                    self._show(bare, self._state, True)
+        return True
 
 
 def _number(value: object, what: str, least: float, most: float) -> float:

@@ -296,16 +296,11 @@ def siege_rows() -> list[Row]:
 def seeking_rows() -> list[Row]:
     """Jumps in a replay of ten minutes, to the message with the picture: wall time, so a busy machine is slower."""
     jumps, target_ms = seeking.measure(OUT), seeking.TARGET_MS
-    name = "jump in a ten-minute replay, p95"
+    name = "jump anywhere in a ten-minute replay, p95"
+    found = {"right after opening": jumps.fresh_p95_ms, "worked out": jumps.known_p95_ms}
     return [
-        Row(f"{name}, worked out", jumps.warm_p95_ms, "ms", f"target {target_ms:g} ms", jumps.warm_p95_ms / target_ms),
-        Row(
-            f"{name}, further on, picture alone",
-            jumps.cold_p95_ms,
-            "ms",
-            f"target {target_ms:g} ms",
-            jumps.cold_p95_ms / target_ms,
-        ),
+        Row(f"{name}, {when}", p95_ms, "ms", f"target {target_ms:g} ms", p95_ms / target_ms)
+        for when, p95_ms in found.items()
     ]
 
 

@@ -1,6 +1,7 @@
 """Playback and its threads: the poses of a straight run wherever one seeks, commands obeyed, nothing left behind."""
 
 from collections.abc import Iterable
+from itertools import count
 from queue import Queue
 from threading import active_count
 
@@ -232,18 +233,22 @@ def test_threads_change_nothing(recorded: Recorded) -> None:
 class Watched:
     """A player, and what it showed."""
 
-    def __init__(self, recorded: Recorded, looping: bool = False) -> None:
+    def __init__(self, recorded: Recorded, looping: bool = False, estimator: str = "truth") -> None:
         self.shown: Queue[tuple[Shown, PlayerState, bool]] = Queue()
         self.states: Queue[PlayerState] = Queue()
         self.player = Player(
             Playback(recorded, START_NS, _pipeline, Upright(RIG)),
             (START_NS, recorded.end_ns),
-            estimator="truth",
+            estimator=estimator,
             looping=looping,
             show=lambda *what: self.shown.put(what),
             report=self.states.put,
         )
+
+    def start(self) -> "Watched":
+        """Start it."""
         self.player.start()
+        return self
 
     def until_sought(self) -> tuple[Shown, PlayerState]:
         """Return the first picture after a seek; one that comes alone while its pose is worked out is passed by."""
@@ -256,7 +261,7 @@ class Watched:
 def test_commands(recorded: Recorded) -> None:
     """Pause, seek, another estimator, and a picture of the place each time; nonsense is refused in a sentence."""
     before = active_count()
-    watched = Watched(recorded)
+    watched = Watched(recorded).start()
     player = watched.player
     assert player.command("pause").result(10.0) is False
     assert player.command("seek", 8.0).result(10.0) is True
@@ -290,9 +295,35 @@ def test_commands(recorded: Recorded) -> None:
     assert active_count() == before
 
 
+def test_who_jumped_too_far_jumps_elsewhere_at_once(recorded: Recorded, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The picture of a place comes before its pose, and another jump does not wait for that."""
+    now_ns = count(0, 5_000_000)  # so little is worked out between two looks at the clock
+    monkeypatch.setattr("tracker.runner.monotonic_ns", lambda: next(now_ns))
+    watched = Watched(recorded, estimator="gps-imu/cmm")
+    watched.player.command("pause")
+    far, near = [watched.player.command("seek", position_s) for position_s in (SECONDS - 1.0, 2.0)]
+    watched.start()
+    try:
+        assert far.result(10.0)
+        assert near.result(10.0)
+        places_s = []
+        while True:
+            shown, state, _ = watched.shown.get(timeout=10.0)
+            places_s.append(round((shown.frame.t_recv_ns - START_NS) * 1e-9))
+            if not state.seeking:
+                break
+    finally:
+        watched.player.close()
+    assert places_s == [SECONDS - 1, 2, 2]
+    straight = Playback(recorded, START_NS, _pipeline, Upright(RIG))
+    straight.choose("gps-imu/cmm")
+    assert _key(shown) in [_key(one) for one in _run(straight)]
+    assert watched.player.error is None
+
+
 def test_plays_to_the_end_and_again(recorded: Recorded) -> None:
     """A loop begins anew with a seek; without one it pauses there."""
-    looping, once = Watched(recorded, looping=True), Watched(recorded)
+    looping, once = Watched(recorded, looping=True).start(), Watched(recorded).start()
     for watched in (looping, once):
         watched.player.command("speed", 16.0).result(10.0)
         watched.player.command("seek", SECONDS - 0.5).result(10.0)
