@@ -34,7 +34,7 @@ from tracker.rig_sheets import CameraMountSheet, CameraSheet
 #: Standard errors that are good enough to be kept.
 LARGEST_ROTATION_SIGMA_RAD = np.radians(0.5)
 LARGEST_OFFSET_SIGMA_S = 0.005
-LARGEST_FOCAL_SIGMA = 0.02
+LARGEST_FOCAL_SCATTER = 0.02
 #: Share of the turning that must be across the line of sight for a focal length.
 LEAST_ACROSS = 0.6
 #: The board is looked for in every fifth picture until it was seen.
@@ -158,17 +158,23 @@ def _result(
         sheets["camera_mount"] = _mount_sheet(mount, feed, rig_file, device)
     found = [*_words(mount, by), *_against_present(mount, rig_file)]
     if free is not None:
-        focal_px, sigma_px = free.camera.fx_px, free.focal_sigma_px
+        focal_px, scatter_px = free.camera.fx_px, free.focal_scatter_px
         stated = "" if mount is free else f"; the recording states {mount.camera.fx_px:.1f}"
-        found.insert(0, f"Focal length {focal_px:.1f} px, ±{sigma_px:.1f}, by the turning alone{stated}.")
+        least_px, most_px = _focal_between_px(free)
+        found.insert(
+            0,
+            f"Focal length {focal_px:.1f} px by the turning alone{stated}. Its turns agree within ±{scatter_px:.1f} px; with what "
+            f"no turn tells (the gyroscope's scale, a lens that bends, the camera's way about who holds it) it is between "
+            f"{least_px:.0f} and {most_px:.0f} px, nineteen times of twenty.",
+        )
         if free.across < LEAST_ACROSS:
             doubts.append(
                 f"The focal length, {focal_px:.0f} px, was not kept: the rig mostly rolled about the line of sight, "
                 "which hardly tells it: pan instead, or run `agora calibrate camera`."
             )
-        elif sigma_px > LARGEST_FOCAL_SIGMA * focal_px:
+        elif scatter_px > LARGEST_FOCAL_SCATTER * focal_px:
             doubts.append(
-                f"The focal length, {focal_px:.0f} px, was not kept: it is uncertain by {sigma_px / focal_px:.1%}: "
+                f"The focal length, {focal_px:.0f} px, was not kept: its turns agree only within {scatter_px / focal_px:.1%}: "
                 "pan further and longer, or run `agora calibrate camera`."
             )
         else:
@@ -179,6 +185,7 @@ def _result(
     numbers = {
         "focal_px": (free or mount).camera.fx_px,
         "focal_sigma_px": (free or mount).focal_sigma_px,
+        "focal_between_px": _focal_between_px(free or mount),
         "focal_is_found": free is not None,
         "R_body_cam": alignment.R_body_cam.tolist(),
         "rotation_sigma_deg": float(np.degrees(worst)),
@@ -194,6 +201,12 @@ def _result(
         return mount_pictures(mount)
 
     return Result("rig", sheets, found, doubts, numbers, pictures)
+
+
+def _focal_between_px(mount: CameraMount) -> tuple[float, float]:
+    """Return the ends of what holds the focal length nineteen times of twenty."""
+    off_px = 1.96 * mount.focal_sigma_px
+    return mount.camera.fx_px - off_px, mount.camera.fx_px + off_px
 
 
 def _mount_sheet(mount: CameraMount, feed: Feed, rig_file: RigFile, device: tuple[str, str]) -> CameraMountSheet:

@@ -29,6 +29,11 @@ _OFFSETS_S = np.arange(-LARGEST_OFFSET_S, LARGEST_OFFSET_S + 1e-9, 0.02)
 _FOCALS = np.exp(np.arange(np.log(0.35), np.log(3.0), 0.15))
 #: Median of what remains of a turn, as its share: more is no turn that camera and gyroscope have in common.
 LARGEST_SHARE = 0.35
+#: What no turn tells apart from the focal length, as shares of it, one sigma each: how true the gyroscope's scale is (data sheets
+#: of consumer units say 3 % at most), a lens that bends (k1 of 0.07 where none is known), and the camera's own way while the rig
+#: turns about whoever holds it (a third of a metre, before things twenty metres away).
+GYRO_SCALE_SHARE, BEND_SHARE, OWN_WAY_SHARE = 0.015, 0.02, 0.017
+_UNTOLD_SHARE = float(np.sqrt(GYRO_SCALE_SHARE**2 + BEND_SHARE**2 + OWN_WAY_SHARE**2))
 
 Progress = Callable[[float], None]
 
@@ -40,7 +45,8 @@ class CameraMount:
     alignment: Alignment
     camera: CameraModel
     """With the focal length as found, where it was not known."""
-    focal_sigma_px: float
+    focal_scatter_px: float
+    """By how much the turns of this recording disagree about the focal length, as its standard error."""
     readout_s: float
     pairs: int
     turn_rad: float
@@ -49,6 +55,13 @@ class CameraMount:
     """Share of the turning that was across the line of sight, 0 to 1: only that tells the focal length."""
     track: GyroTrack
     turns: Turns
+
+    @property
+    def focal_sigma_px(self) -> float:
+        """Standard error of the focal length, with what a turn cannot tell apart from it; zero where it was known."""
+        return (
+            float(np.hypot(self.focal_scatter_px, _UNTOLD_SHARE * self.camera.fx_px)) if self.focal_scatter_px else 0.0
+        )
 
     @property
     def residual_px(self) -> float:

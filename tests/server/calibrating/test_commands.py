@@ -218,6 +218,8 @@ def test_the_pan_of_a_phone_tells_the_focal_length_but_not_the_rotation_about_it
     found = told(run("rig", "--log", log, "--rig", rig, "--json"))
     assert found["kept"] == ["camera"]
     assert found["focal_px"] == pytest.approx(478.0, rel=0.03)
+    least_px, most_px = found["focal_between_px"]
+    assert least_px < 478.0 < most_px < 1.1 * found["focal_px"]
     assert found["readout_s"] == pytest.approx(0.024, abs=0.004)
     assert len(found["doubts"]) == 1
     assert "nod and tilt as well" in found["doubts"][0]
