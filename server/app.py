@@ -18,6 +18,7 @@ from server.guards import Guard
 from server.limits import Limits, Throttle, Visitors
 from server.log_routes import log_routes, upload_routes
 from server.log_store import LogStore
+from server.refusal import add_refusals
 from server.replays import Replays
 from server.reviewing.exported import Exporter
 from server.reviewing.reviews import Reviews
@@ -101,6 +102,7 @@ def create_app(
     app.include_router(page_routes(web_folder, models_folder))
     app.include_router(console_routes(console, access))
     app.include_router(socket_routes(sessions, access))
+    add_refusals(app)
     app.mount("/", Bundle(directory=web_folder, check_dir=False), name="bundle")
     app.add_middleware(Throttle, visitors=app.state.visitors, large_bodies=_is_upload)
     app.add_middleware(Guard, allowed_hosts=allowed_hosts, any_address=any_address)

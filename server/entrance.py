@@ -1,46 +1,23 @@
 """The way in: `/enter` exchanges a one-time code or a token for a cookie, and the address that stays names neither."""
 
-from base64 import b64encode
-from hashlib import sha256
 from html import escape
 from typing import Annotated, Any, Final
 from urllib.parse import parse_qs
 
 from fastapi import APIRouter, Depends, HTTPException, Request, Response
-from fastapi.responses import HTMLResponse, RedirectResponse
+from fastapi.responses import RedirectResponse
 from msgspec import Meta, MsgspecError, Struct, json
 
 from server.access import Access, known
 from server.codes import LIFETIME_S
 from server.errors import ServerFull, TokenRefused
 from server.grants import Grant, SessionName
+from server.language import language_of, speaking
+from server.plain_page import plain_page
 from server.tokens import Issued, is_token
-from server.welcome import language_of, said, words
 
-_STYLE: Final = (
-    "body{background:#0b0a08;color:#eee6d8;font:1rem/1.5 system-ui,sans-serif;max-width:28rem;margin:15vh auto;padding:0 1rem}"
-    "input,button{font:inherit;padding:.4rem .6rem;width:100%;min-height:44px;box-sizing:border-box;margin-top:.5rem}"
-)
-#: The page's own policy: one style, told by its hash, and a form that comes back here; no script at all.
-_POLICY: Final = "; ".join(
-    (
-        "default-src 'none'",
-        f"style-src 'sha256-{b64encode(sha256(_STYLE.encode()).digest()).decode()}'",
-        "form-action 'self'",
-        "base-uri 'none'",
-        "frame-ancestors 'none'",
-    )
-)
-_PAGE: Final = """<!doctype html><html lang="{language}"><meta charset="utf-8"><meta name="viewport" content="width=device-width">
-<title>{title}</title><style>{style}</style><h1>Agora</h1><p>{sentence}</p>
-<form method="post" action="/enter"><label for="token">{label}</label>
-<input id="token" name="token" type="password" autocomplete="off" required autofocus><button>{button}</button></form></html>"""
-_HEADERS: Final = {
-    "Content-Security-Policy": _POLICY,
-    "Cache-Control": "no-store",
-    # under no-referrer browsers send the form with `Origin: null`, which is what a foreign page's would say
-    "Referrer-Policy": "strict-origin",
-}
+#: Under no-referrer browsers send the form with `Origin: null`, which is what a foreign page's would say.
+_HEADERS: Final = {"Referrer-Policy": "strict-origin"}
 
 
 class CodeRequest(Struct, frozen=True, forbid_unknown_fields=True):
@@ -115,8 +92,13 @@ def _wanted(access: Access, grant: Grant, body: bytes) -> Grant:
 
 def _page(request: Request, sentence: str, status: int = 200) -> Response:
     language = language_of(request.headers.get("accept-language"))
-    page = _PAGE.format(style=_STYLE, language=language, sentence=escape(said(sentence, language)), **words(language))
-    return HTMLResponse(page, status, _HEADERS)
+    say = speaking(language)
+    body = (
+        f'<h1>{escape(say(sentence))}</h1><form method="post" action="/enter"><label for="token">{say("Token or code")}</label>'
+        '<input id="token" name="token" type="password" autocomplete="off" required autofocus>'
+        f"<button>{say('Enter')}</button></form>"
+    )
+    return plain_page(language, say("Agora · enter"), body, status=status, has_form=True, headers=_HEADERS)
 
 
 def _secure(request: Request) -> bool:

@@ -10,6 +10,8 @@ from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
+from server.refusal import refusal
+
 #: three.js decodes textures from blobs and its mesh decoder is WebAssembly; nothing else but ourselves is ever contacted.
 _CONTENT_SECURITY_POLICY = "; ".join(
     (
@@ -76,7 +78,7 @@ class Guard:
                     headers.setdefault("Strict-Transport-Security", _STRICT_TRANSPORT)
             await send(message)
 
-        app = PlainTextResponse(fault, 403) if fault else self._app
+        app = refusal(asked, 403, fault) if fault else self._app
         await app(scope, receive, send_with_headers)
 
     def _fault(self, headers: Headers, *, changes: bool) -> str | None:

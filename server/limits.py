@@ -11,6 +11,8 @@ from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
+from server.refusal import refusal
+
 #: More addresses than this are not remembered: those that were silent longest are forgotten.
 _MAX_ADDRESSES: Final = 10_000
 _TOO_MANY: Final = "Too many requests from your address: wait a little."
@@ -176,11 +178,13 @@ class Throttle:
 
 
 async def _refuse(scope: Scope, receive: Receive, send: Send) -> None:
-    refusal = PlainTextResponse(_TOO_MANY, 429, {"Retry-After": "1"})
+    later = {"Retry-After": "1"}
     if scope["type"] == "websocket":
-        await WebSocket(scope, receive, send).send_denial_response(refusal)
-    else:
-        await refusal(scope, receive, send)
+        await WebSocket(scope, receive, send).send_denial_response(PlainTextResponse(_TOO_MANY, 429, later))
+        return
+    response = refusal(Headers(scope=scope), 429, _TOO_MANY)
+    response.headers.update(later)
+    await response(scope, receive, send)
 
 
 class _TooLarge(Exception):

@@ -94,7 +94,7 @@ def camera(
     stop = Event()
     with _page(collection, port, browser) if feed.is_live else nullcontext(), _interruptible(stop), _told() as told:
         result = calibrate_camera(feed, collection, told, stop.is_set)
-        collection.finished = f"Done: {result.found[0]}"
+        collection.finished = True
     _finish(result, place, report, as_json=as_json, dry_run=dry_run)
 
 

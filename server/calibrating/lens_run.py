@@ -9,6 +9,7 @@ import numpy as np
 
 from server.calibrating.feed import Feed, Progress
 from server.calibrating.result import Result, today
+from server.language import Say
 from server.plots.lens import lens_pictures
 from tracker.calibrate.board import Board, BoardView
 from tracker.calibrate.board_views import GRID, covered, place_of
@@ -37,8 +38,8 @@ class Collection:
     counts: Matrix = field(default_factory=lambda: np.zeros((GRID[1], GRID[0])))
     places: list[Matrix] = field(default_factory=list)
     pictures: int = 0
-    finished: str = ""
-    """What came of it, once it is over."""
+    finished: bool = False
+    """Whether the lens was found."""
     newest: tuple[Image, BoardView | None] | None = None
 
     def step(self, frame: Frame) -> None:
@@ -72,23 +73,24 @@ class Collection:
         """Return whether more would tell little."""
         return len(self.places) >= ENOUGH_VIEWS and self.coverage >= ENOUGH_COVERAGE and self.slanted >= ENOUGH_SLANTED
 
-    def hint(self) -> str:
+    def hint(self, say: Say = str) -> str:
         """Return what to do next, in words."""
         if self.finished:
-            return self.finished
+            return say("Done: the lens is known, and its figures are in the terminal.")
         if not self.views:
-            return "Show the board to the camera: nothing of it is seen yet."
+            return say("Show the board to the camera: nothing of it is seen yet.")
         if self.coverage < ENOUGH_COVERAGE:
             rows, columns = np.divmod(int(np.argmin(_least(self.counts))), GRID[0])
-            return f"Bring the board to the {_side(int(rows), int(columns))} of the picture; a part of it is enough."
+            side = say(_side(int(rows), int(columns)))
+            return say("Bring the board to the {side} of the picture; a part of it is enough.").format(side=side)
         if self.slanted < ENOUGH_SLANTED:
-            return "Slant the board by 30 degrees to each side, and up and down."
+            return say("Slant the board by 30 degrees to each side, and up and down.")
         if len(self.places) < ENOUGH_VIEWS:
-            return "Go on, near and far, and hold still now and then."
-        return "That is enough."
+            return say("Go on, near and far, and hold still now and then.")
+        return say("That is enough.")
 
-    def state(self) -> Mapping[str, Any]:
-        """Return it for the page, as JSON values."""
+    def state(self, say: Say = str) -> Mapping[str, Any]:
+        """Return it for the page, as JSON values, with its words in a language."""
         counts = self.counts
         return {
             "pictures": self.pictures,
@@ -100,8 +102,8 @@ class Collection:
             "slanted": self.slanted,
             "slanted_wanted": ENOUGH_SLANTED,
             "grid": [[int(value) for value in row] for row in counts.tolist()],
-            "hint": self.hint(),
-            "finished": bool(self.finished),
+            "hint": self.hint(say),
+            "finished": self.finished,
         }
 
     def picture(self) -> bytes | None:

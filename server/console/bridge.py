@@ -7,7 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Final
 
-from fastapi import APIRouter, Depends, WebSocket
+from fastapi import APIRouter, Depends, Request, WebSocket
 from fastapi.responses import FileResponse, PlainTextResponse
 from starlette.responses import Response
 from starlette.websockets import WebSocketDisconnect
@@ -19,6 +19,7 @@ from server.access import Access, needs
 from server.console.hosting import ConsoleHost
 from server.errors import ConsoleUnavailable, TokenRefused
 from server.grants import Grant
+from server.refusal import refusal
 
 _logger = logging.getLogger(__name__)
 
@@ -49,10 +50,10 @@ def console_routes(host: ConsoleHost | None, access: Access) -> APIRouter:
     router = APIRouter(include_in_schema=False)
 
     @router.get("/console", dependencies=[Depends(needs(access, "operate"))])
-    async def page() -> Response:
+    async def page(request: Request) -> Response:
         path = _page()
         if host is None or path is None:
-            return PlainTextResponse(_NOT_HERE, 404)
+            return refusal(request.headers, 404, _NOT_HERE)
         try:
             await host.open()  # while the browser unpacks the page, its socket's other end is there already
         except ConsoleUnavailable as exc:
