@@ -24,7 +24,7 @@ from tracker.precise import observations
 from tracker.precise.activity import Activity
 from tracker.precise.compass import Compass
 from tracker.precise.error_model import ProcessNoise
-from tracker.precise.error_state import ErrorState
+from tracker.precise.error_state import Correction, ErrorState
 from tracker.precise.eye import Eye
 from tracker.precise.gap import LEVEL_NOISE, AfterGap, drift, has_lost_heading, is_gap
 from tracker.precise.ground import EyeHeight, standing_z_m
@@ -166,11 +166,9 @@ class Engine:
         if counted:
             self._counted_ns = sample.t_ns
             self._look_after_gap(sample, in_gap)
-        if counted and not in_gap:
-            self._stride.step(accel, self.best.nav.wxyz_site_body, (sample.t_ns - last.t_ns) * 1e-9)
-            if self._activity.step(sample):
-                with self._heading_followed():
-                    self._cycle(sample.t_ns)
+        if counted and not in_gap and self._activity.step(sample):
+            with self._heading_followed():
+                self._cycle(sample.t_ns)
 
     def _look_after_gap(self, sample: ImuSample, in_gap: bool) -> None:
         """Level the rig when half a second after a gap is over, and look for its heading where nothing has told it."""
@@ -220,15 +218,15 @@ class Engine:
                 noise = settings.still_rate_sigma_rad_s**2 * _I3
                 hypotheses.correct(lambda f: f.correct(*observations.turn_rate(f, activity.gyro_mean_rad_s), noise))
         elif self._is_blind(t_ns):
-            expected, noise = self._stride.onward(activity.force_spread_m_s2, settings)
-            hypotheses.correct(
-                lambda f: f.correct(
-                    *observations.velocity(f, expected), noise, gated=False, tells_north=self._tells_north
-                )
-            )
+            hypotheses.correct(self._go_on)
         else:
-            self._stride.learn(activity.force_spread_m_s2, self.best.nav.v_m_s)
+            self._stride.learn(activity.force_spread_m_s2, self.best.nav)
         self._stand_on_ground()
+
+    def _go_on(self, filter_: ErrorState) -> Correction:
+        seen, noise = self._stride.onward(self._activity.force_spread_m_s2, filter_, self._settings)
+        # who looks where they do not go must not turn north
+        return filter_.correct(*seen, noise, gated=False, tells_north=False)
 
     def _is_blind(self, t_ns: int) -> bool:
         """Whether the receiver has been silent for longer than its usual second."""

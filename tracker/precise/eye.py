@@ -48,7 +48,8 @@ class Eye:
         if seen is None:
             return None
         settings = self._settings
-        sigma = max(settings.vision_direction_rad, (settings.vision_point_px / max(motion.parallax_px, 0.1)) ** 2)
+        sigma = max(settings.vision_direction_rad, settings.vision_point_px / max(motion.parallax_px, 0.1))
+        sigma = hypot(sigma, *seen[0].tolist())  # points that are mismatched agree on anything
         return filter_.correct(*seen, sigma**2 * np.eye(2))
 
 

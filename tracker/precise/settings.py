@@ -52,9 +52,7 @@ class PreciseSettings:
     insist: int = 5
     """So many refused fixes in a row are believed."""
     stride_sigma_m_s: float = 0.6
-    """Of the speed that steps tell, four times a second, where the receiver tells none."""
-    facing_sigma_m_s: float = 0.6
-    """... and across the way that the walker faces."""
+    """Of the speed that steps tell, four times a second, before anything was learned of the walker; and upwards."""
     still_sigma_m_s: float = 0.03
     """A head that stands sways by this much."""
     still_rate_sigma_rad_s: float = 0.012
@@ -78,10 +76,10 @@ class PreciseSettings:
     vision_mixed: float = 6.0
     """How much worse it is, per pixel, where a parallax of about two pixels leaves open what is turn and what is travel: beside
     a wall a share of the travel is taken for a turn, always the same way."""
-    vision_direction_rad: float = 0.06
+    vision_direction_rad: float = 0.02
     """Of a direction of travel, at best;"""
-    vision_point_px: float = 6.0
-    """and the square of this, by the parallax in pixels, where that is worse."""
+    vision_point_px: float = 0.15
+    """and this by the parallax in pixels, where that is worse. The further off one is the less it counts: a few are wrong."""
     blend_s: float = 1.8
     """A correction moves what is shown with this time constant: a temple that jumps is worse than one that is off."""
     blend_turn_s: float = 0.6

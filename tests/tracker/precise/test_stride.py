@@ -1,20 +1,27 @@
 """The speed that steps tell, and the way that one goes on."""
 
-from dataclasses import replace
+from math import pi
 
 import numpy as np
 import pytest
 
+from tracker.geometry import wxyz_from_yaw
 from tracker.measurements import Vector3
+from tracker.precise.error_model import start_covariance
+from tracker.precise.error_state import ErrorState
+from tracker.precise.navigation import Biases, Navigation
 from tracker.precise.settings import PreciseSettings
 from tracker.precise.stride import Stride
 
-SETTINGS = replace(PreciseSettings(), stride_sigma_m_s=0.3, facing_sigma_m_s=0.4)
-LEVEL = (1.0, 0.0, 0.0, 0.0)
+SETTINGS = PreciseSettings()
 
 
-def _north(speed_m_s: float) -> Vector3:
-    return (0.0, speed_m_s, 0.0)
+def _nav(v_m_s: Vector3, yaw_rad: float = 0.0) -> Navigation:
+    return Navigation(0, (0.0, 0.0, 0.0), v_m_s, wxyz_from_yaw(yaw_rad))
+
+
+def _north(speed_m_s: float) -> Navigation:
+    return _nav((0.0, speed_m_s, 0.0))
 
 
 def test_before_anything_is_known_one_walks_at_an_easy_pace() -> None:
@@ -56,18 +63,81 @@ def test_nobody_runs_backwards_or_flies() -> None:
     assert stride.speed_m_s(0.1) == 0.0
 
 
-def test_who_walks_goes_on_the_way_they_face_and_that_is_less_sure() -> None:
-    stride = Stride()
-    for step in range(600):
-        stride.step((0.0, 0.0, 9.8 + 2.0 * (-1.0) ** step), LEVEL, 0.02)
-        stride.learn(2.0, (1.2, 0.0, 0.0))
-    velocity, noise = stride.onward(2.0, SETTINGS)
-    assert velocity == pytest.approx((1.2, 0.0, 0.0), abs=0.02)
-    assert np.sqrt(np.diag(noise)) == pytest.approx([0.3, 0.5, 0.3])
+def _state(v_m_s: Vector3, yaw_rad: float = 0.0) -> ErrorState:
+    settings = PreciseSettings()
+    covariance = start_covariance(settings, (1.0, 1.0, 1.0), 0.3, 0.1)
+    return ErrorState(settings, _nav(v_m_s, yaw_rad), Biases(), covariance, 9.8)
+
+
+def _walked(noise_m_s: float = 0.0) -> Stride:
+    """Whoever has walked eastwards for a while, looking ahead."""
+    rng, stride = np.random.default_rng(5), Stride()
+    for _ in range(600):
+        stride.learn(2.0, _nav((1.2 + float(rng.normal(0.0, noise_m_s)), 0.0, 0.0)))
+    return stride
+
+
+def _seen(stride: Stride, state: ErrorState) -> tuple[Vector3, Vector3]:
+    """Return by what a state is corrected, and the deviations: along the way, across it, upwards."""
+    (residual, _), noise = stride.onward(2.0, state, SETTINGS)
+    x, y, z = residual.tolist()
+    a, b, c = np.sqrt(np.diag(noise)).tolist()
+    return (x, y, z), (a, b, c)
+
+
+def test_who_walks_goes_on_the_way_they_face() -> None:
+    residual, _ = _seen(_walked(), _state((1.0, 0.0, 0.1)))
+    assert residual == pytest.approx((0.2, 0.0, -0.1), abs=0.02)
+
+
+def test_the_less_evenly_one_went_the_less_is_known_of_the_speed() -> None:
+    _, (even, *_) = _seen(_walked(), _state((1.2, 0.0, 0.0)))
+    _, (uneven, *_) = _seen(_walked(0.4), _state((1.2, 0.0, 0.0)))
+    assert even < 0.2 < 0.5 < uneven < 0.7
+
+
+def test_the_further_the_facing_is_from_the_way_the_less_it_counts() -> None:
+    """At sixty degrees aside it is a glance; the speed is along the way nevertheless."""
+    (along, course, _), (_, doubt, _) = _seen(_walked(), _state((1.2, 0.0, 0.0), yaw_rad=pi / 3))
+    assert along == pytest.approx(0.0, abs=0.02)
+    assert course == pytest.approx(pi / 3, abs=0.02)
+    assert doubt > pi / 3
+    assert _seen(_walked(), _state((1.2, 0.0, 0.0)))[1][1] < 0.2
+
+
+def test_who_begins_to_walk_goes_where_they_face() -> None:
+    (along, across, _), (_, doubt, _) = _seen(_walked(), _state((0.0, 0.2, 0.0), yaw_rad=pi / 2))
+    assert along == pytest.approx(1.0, abs=0.02)
+    assert across == pytest.approx(0.0, abs=0.02)
+    assert doubt < 0.3
+
+
+@pytest.mark.parametrize("speed_m_s", [0.3, 1.1])
+@pytest.mark.parametrize("yaw_rad", [0.0, 1.2, 3.0])
+def test_its_slopes_are_those_of_its_residual(yaw_rad: float, speed_m_s: float) -> None:
+    stride, step = _walked(), 1e-6
+    state = _state((speed_m_s, 0.2, 0.05), yaw_rad)
+    (residual, blocks), _ = stride.onward(2.0, state, SETTINGS)
+    H = np.zeros((3, len(state.covariance)))
+    for where, block in blocks:
+        H[:, where] += block
+    for column in (3, 4, 5, 8):
+        error = np.zeros(len(state.covariance))
+        error[column] = step
+        moved = state.copied()
+        moved.move(error)
+        (after, _), _ = stride.onward(2.0, moved, SETTINGS)
+        assert (residual - after) / step == pytest.approx(H[:, column], abs=1e-4)
 
 
 def test_of_a_rig_in_the_hands_nothing_says_that_it_goes_anywhere() -> None:
-    velocity, noise = Stride().onward(1.0, SETTINGS)
-    assert velocity == (0.0, 0.0, 0.0)
-    assert np.sqrt(np.diag(noise)) == pytest.approx([0.4, 0.4, 0.4])
-    assert Stride().onward(1e6, SETTINGS)[1].max() == pytest.approx(1.6**2)
+    residual, sigma = _seen_held(1.0)
+    assert residual == pytest.approx((-1.0, 0.0, 0.0))
+    assert sigma == pytest.approx(0.4)
+    assert _seen_held(1e6)[1] == pytest.approx(1.6)
+
+
+def _seen_held(spread_m_s2: float) -> tuple[Vector3, float]:
+    (residual, _), noise = Stride().onward(spread_m_s2, _state((1.0, 0.0, 0.0)), SETTINGS)
+    x, y, z = residual.tolist()
+    return (x, y, z), float(np.sqrt(noise[0, 0]))
