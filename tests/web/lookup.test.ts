@@ -76,6 +76,13 @@ describe.each(LENSES)("$model $coefficients.0", (lens) => {
   });
 });
 
+test("cells are as wide as the lens allows", () => {
+  const columns = LENSES.map((lens) => buildLookup(lens).columns);
+  expect(columns[0]).toBe(1);
+  expect(columns[1]).toBeLessThan(columns[2] ?? 0);
+  for (const lens of LENSES.slice(2)) expect(buildLookup(lens).columns).toBe(SIZE.width_px / 8);
+});
+
 test("places outside the lens model are marked, and do not widen the window", () => {
   const wide: Lens = { ...SIZE, fx_px: 200, fy_px: 200, model: "plumb_bob", coefficients: [-0.3, 0, 0, 0, 0, 0, 0, 0] };
   const { known, window } = buildLookup(wide);

@@ -27,8 +27,10 @@ export interface Lookup {
   readonly known: Float32Array;
 }
 
-/** A cell is this wide: linear in between is then within 0.01 px for an ordinary lens. */
-const CELL_PX = 8;
+/** How wide a cell may be, the widest first: as wide as the lens allows, for each costs time where there is no card. */
+const CELLS_PX = [32, 16] as const;
+/** So far off linear in between may be, pixels; where even the narrowest cells are further off, they are halved. */
+const NEARLY_PX = 0.05;
 /** Ideal coordinates wider than this (72 degrees off the axis) cost more pixels than they are worth. */
 const WIDEST_WINDOW = 3;
 
@@ -36,9 +38,7 @@ const WIDEST_WINDOW = 3;
 export function buildLookup(lens: Lens): Lookup {
   const straight =
     lens.model === "none" || (lens.coefficients.every((value) => value === 0) && lens.model !== "equidistant");
-  const columns = straight ? 1 : Math.ceil(lens.width_px / CELL_PX);
-  const rows = straight ? 1 : Math.ceil(lens.height_px / CELL_PX);
-  const nodes = idealNodes(lens, columns, rows);
+  const { columns, rows, nodes } = straight ? gridOf(lens, 1, 1) : gridFor(lens);
   const window = windowOf(nodes.map((node) => node.ideal));
   const places_px = new Float32Array(nodes.length * 2);
   const uv = new Float32Array(nodes.length * 2);
@@ -53,16 +53,59 @@ export function buildLookup(lens: Lens): Lookup {
   return { columns, rows, window, places_px, uv, known };
 }
 
-function idealNodes(lens: Lens, columns: number, rows: number): { place: Pair; ideal: Pair | null }[] {
+interface Node {
+  readonly place: Pair;
+  readonly ideal: Pair | null;
+}
+
+interface Grid {
+  readonly columns: number;
+  readonly rows: number;
+  readonly nodes: readonly Node[];
+}
+
+/** Return the coarsest grid that says what the lens says. */
+function gridFor(lens: Lens): Grid {
+  let grid = gridOf(lens, 1, 1);
+  for (const cell_px of CELLS_PX) {
+    const [columns, rows] = [Math.ceil(lens.width_px / cell_px), Math.ceil(lens.height_px / cell_px)];
+    grid = gridOf(lens, 2 * columns, 2 * rows);
+    if (unevenness(lens, grid) < NEARLY_PX) return { columns, rows, nodes: everySecond(grid) };
+  }
+  return grid;
+}
+
+function gridOf(lens: Lens, columns: number, rows: number): Grid {
   const radius = domainRadius(lens);
-  const nodes: { place: Pair; ideal: Pair | null }[] = [];
+  const nodes: Node[] = [];
   for (let row = 0; row <= rows; row++) {
     for (let column = 0; column <= columns; column++) {
       const place: Pair = [(column / columns) * lens.width_px, (row / rows) * lens.height_px];
       nodes.push({ place, ideal: idealAt(lens, [place[0] - 0.5, place[1] - 0.5], radius) });
     }
   }
-  return nodes;
+  return { columns, rows, nodes };
+}
+
+function everySecond({ columns, nodes }: Grid): readonly Node[] {
+  return nodes.filter((_, i) => (i % (columns + 1)) % 2 === 0 && Math.floor(i / (columns + 1)) % 2 === 0);
+}
+
+/** Return how far, pixels, the nodes between every second ones are from the middles of those; infinite beyond the lens model. */
+function unevenness(lens: Lens, { columns, rows, nodes }: Grid): number {
+  let worst_px = 0;
+  for (let row = 0; row <= rows; row++) {
+    for (let column = 0; column <= columns; column++) {
+      const [right, down] = [column % 2, row % 2]; // of a cell's middle: its two triangles meet from top right to bottom left
+      const at = (i: number, j: number): Pair | null => nodes[j * (columns + 1) + i]?.ideal ?? null;
+      const [own, one, other] = [at(column, row), at(column + right, row - down), at(column - right, row + down)];
+      if (!own || !one || !other) return Number.POSITIVE_INFINITY;
+      const dx_px = lens.fx_px * (own[0] - (one[0] + other[0]) / 2);
+      const dy_px = lens.fy_px * (own[1] - (one[1] + other[1]) / 2);
+      worst_px = Math.max(worst_px, Math.hypot(dx_px, dy_px));
+    }
+  }
+  return worst_px;
 }
 
 /** Return the smallest window with all the known nodes, no wider than a drawing can afford. */

@@ -24,12 +24,17 @@ const VERTEX = /* glsl */ `
   varying vec2 vAt; varying vec3 vSky; varying vec3 vSun; varying vec3 vTint;
   void main() {
     #include <color_vertex>
-    #include <batching_vertex>
-    #include <beginnormal_vertex>
-    #include <defaultnormal_vertex>
-    #include <begin_vertex>
-    #include <project_vertex>
-    #include <worldpos_vertex>
+    // all of a batch lies in the world's own axes (batches.ts): to look its matrices up would take as long as all the rest
+    vec4 worldPosition = vec4(position, 1.0);
+    vec3 transformedNormal = normal;
+    #ifdef USE_INSTANCING
+      mat3 turn = mat3(instanceMatrix);
+      worldPosition = instanceMatrix * worldPosition;
+      transformedNormal = turn * (normal / vec3(dot(turn[0], turn[0]), dot(turn[1], turn[1]), dot(turn[2], turn[2])));
+    #endif
+    transformedNormal = normalMatrix * transformedNormal;
+    vec4 mvPosition = viewMatrix * worldPosition;
+    gl_Position = projectionMatrix * mvPosition;
     #include <shadowmap_vertex>
     #include <fog_vertex>
     vec3 upright = normalize(transformedNormal);

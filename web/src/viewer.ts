@@ -40,6 +40,8 @@ interface Waiting {
   readonly message: FrameMessage;
   readonly bitmap: ImageBitmap;
   readonly arrived_ms: number;
+  /** What is laid over it, where that is drawn already. */
+  readonly overlay: Overlay | null;
 }
 
 export class Viewer {
@@ -188,14 +190,16 @@ export class Viewer {
       try {
         const message = decodeFrame(bytes);
         const blob = new Blob([message.jpeg], { type: "image/jpeg" });
-        const bitmap = await createImageBitmap(blob, { colorSpaceConversion: "none", premultiplyAlpha: "none" });
+        const decoded = createImageBitmap(blob, { colorSpaceConversion: "none", premultiplyAlpha: "none" });
+        const overlay = this.drawAhead(message);
+        const bitmap = await decoded;
         if (this.waiting) {
           this.audience.done(this.waiting.message.frameId);
           this.waiting.bitmap.close();
         }
-        this.waiting = { message, bitmap, arrived_ms };
+        this.waiting = { message, bitmap, arrived_ms, overlay };
         // at once, but one for each time that the screen is drawn: more would only queue up
-        if (this.isFree) this.drawWaiting(performance.now());
+        if (this.isFree || overlay) this.drawWaiting(performance.now());
         this.isFree = false;
       } catch (error) {
         // a picture that does not decode is as good as drawn: else the rig would wait for it
@@ -225,11 +229,24 @@ export class Viewer {
     this.lastPicture_ms = now_ms;
   }
 
-  private draw({ message, bitmap, arrived_ms }: Waiting, now_ms: number): void {
+  /** Draw the model for a picture while that is decoded, if it will be drawn next; return what is laid over it then. */
+  private drawAhead(message: FrameMessage): Overlay | null {
+    if (!this.isFree || this.waiting || this.audience.holds || this.drawingLost) return null;
+    const overlay = this.overlayOf(message);
+    this.composite.drawAhead({ lens: message.lens, T_site_cam: overlay.T_site_cam, doubt: overlay.doubt });
+    return overlay;
+  }
+
+  private overlayOf(message: FrameMessage): Overlay {
+    const { pose } = message;
+    this.overlays.aligning = this.audience.aligning;
+    return this.overlays.take(message, pose?.frameId === message.frameId ? pose : null);
+  }
+
+  private draw({ message, bitmap, arrived_ms, overlay }: Waiting, now_ms: number): void {
     this.frame = message;
     const { pose, locked } = this;
-    this.overlays.aligning = this.audience.aligning;
-    this.overlay = this.overlays.take(message, locked);
+    this.overlay = overlay ?? this.overlayOf(message);
     this.composite.laying = this.overlays.aligning ? seenThrough(this.overlay.laying) : this.overlay.laying;
     this.look.before(message, bitmap, now_ms);
     const began_ms = performance.now();
