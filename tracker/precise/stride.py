@@ -34,6 +34,8 @@ _LEAST_M_S = 0.15
 _DOUBT_WORTH = 8.0
 #: Directions that have nothing to do with the facing are no further apart than this.
 _ANYWHERE_RAD = 2.0
+#: Who looks further than this from where they go looks aside.
+_GLANCE_RAD = 0.2
 #: Who faces elsewhere than it seems goes elsewhere.
 _BY_HEADING = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, 0.0]])
 
@@ -51,7 +53,9 @@ class Stride:
     def learn(self, spread_m_s2: float, nav: Navigation) -> None:
         """Take how much the force spread in a quarter of a second while the velocity was known."""
         x, y = spread_m_s2, hypot(nav.v_m_s[0], nav.v_m_s[1])
-        if x > GAIT_STD_M_S2 and y > WALKING_M_S:
+        if y < WALKING_M_S:
+            return  # who stops shakes on for a moment: a line through that, too, would be too low for who walks
+        if x > GAIT_STD_M_S2:
             self._facing.learn(nav.v_m_s, nav.wxyz_site_body)
             self._steps, self._off = _KEPT * self._steps + 1.0, _KEPT * self._off + (y - self.speed_m_s(x)) ** 2
         self._n, self._x, self._xx = _KEPT * self._n + 1.0, _KEPT * self._x + x, _KEPT * self._xx + x * x
@@ -83,7 +87,7 @@ class Stride:
         x, y = east / speed, north / speed
         H = np.array([[x, y, 0.0], [-y / speed, x / speed, 0.0], [0.0, 0.0, 1.0]])
         # the more it would turn the walker, the less the facing counts: people look aside, and go on as they went
-        doubt_rad = hypot(max(_ALIKE * aside_rad, _LEAST_M_S / speed), off_rad)
+        doubt_rad = max(_ALIKE * aside_rad, _LEAST_M_S / speed) * (1.0 + (off_rad / _GLANCE_RAD) ** 2)
         seen = np.array([told - speed, off_rad, -up]), [(V, H), (THETA, _BY_HEADING)]
         return seen, np.diag([sigma**2, doubt_rad**2, settings.stride_sigma_m_s**2])
 

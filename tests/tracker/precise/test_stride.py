@@ -54,11 +54,18 @@ def test_a_walker_who_always_shakes_alike_has_one_speed(spread: float) -> None:
     assert stride.speed_m_s(spread) == pytest.approx(1.2, abs=0.02)
 
 
+def test_who_has_just_stopped_teaches_nothing() -> None:
+    stride = _walked()
+    for _ in range(200):
+        stride.learn(1.5, _north(0.1))
+    assert stride.speed_m_s(2.0) == pytest.approx(1.2, abs=0.02)
+
+
 def test_nobody_runs_backwards_or_flies() -> None:
     stride = Stride()
     assert stride.speed_m_s(1000.0) == 2.5
     for _ in range(500):
-        stride.learn(2.0, _north(0.0))
+        stride.learn(2.0, _north(0.6))
         stride.learn(3.0, _north(2.0))
     assert stride.speed_m_s(0.1) == 0.0
 
