@@ -170,18 +170,27 @@ class Engine:
             with self._heading_followed():
                 self._cycle(sample.t_ns)
 
+    @property
+    def is_after_gap(self) -> bool:
+        """Whether a gap was so short a time ago that nothing has told yet how the rig has turned in it."""
+        return self._after_gap is not None
+
     def _look_after_gap(self, sample: ImuSample, in_gap: bool) -> None:
         """Level the rig when half a second after a gap is over, and look for its heading where nothing has told it."""
-        assert self.hypotheses is not None
+        hypotheses = self.hypotheses
+        assert hypotheses is not None
         if in_gap:
             self._after_gap = AfterGap(sample.t_ns)
             self._compass.forget()
             self._activity.forget()
-        elif self._after_gap is not None and self._after_gap.take(sample, self.best):
-            level, self._after_gap = self._after_gap.level(), None
-            if not self.hypotheses.are_many:
-                self.hypotheses.correct(lambda f: f.correct(*level, LEVEL_NOISE))
-                if has_lost_heading(self.best):
+        elif self._after_gap is not None and (due := self._after_gap.take(sample, self.best)) is not None:
+            if due == "level" and not hypotheses.are_many:
+                level = self._after_gap.level()
+                hypotheses.correct(lambda f: f.correct(*level, LEVEL_NOISE))
+                self._compass.forget()  # it was told while the rig seemed to lean otherwise
+            elif due == "heading":
+                self._after_gap = None
+                if not hypotheses.are_many and has_lost_heading(self.best):
                     self._find_heading(yaw_of(self.best.nav.wxyz_site_body))
 
     def _begin(self, sample: ImuSample) -> None:
@@ -329,7 +338,8 @@ class Engine:
         hypotheses, settings = self.hypotheses, self._settings
         assert hypotheses is not None
         self._compass.field(sample, self.best.nav.wxyz_site_body)
-        if hypotheses.are_many or not self._compass.is_trusted or sample.t_ns < self._compass_due_ns:
+        leans = self._after_gap is not None and not self._after_gap.is_level
+        if hypotheses.are_many or leans or not self._compass.is_trusted or sample.t_ns < self._compass_due_ns:
             return
         self._compass_due_ns = sample.t_ns + round(settings.magnetic_every_s * 1e9)
         noise = np.array([[settings.magnetic_sigma_rad**2]])

@@ -39,6 +39,8 @@ from tracker.rig import Rig
 _KINDS = (ImuSample, MagSample, CompassHeading, GpsFix, GpsVelocity, VisualMotion, Sighting, Standpoint)
 #: Further ahead of the newest inertial sample than this, nothing is known.
 _LONGEST_PREDICTION_NS = 1_000_000_000
+#: One head in a hundred has turned by 25 degrees that nobody saw when this long has passed since the newest sample.
+_HEADING_HOLDS_NS = 300_000_000
 #: What a head may do after the newest inertial sample: standard deviations of what adds to its motion then.
 _UNFORESEEN_M_S2, _UNFORESEEN_RAD_S2 = 3.0, 4.0
 #: A receiver that has told no position for this long may not be there: attitude alone is better than nothing.
@@ -172,7 +174,8 @@ class PreciseEstimator:
         cov = self._covariance(start, nav)
         if not _is_finite(nav) or not np.all(np.isfinite(cov)):
             return None
-        known = float(cov[5, 5]) < self._settings.heading_known_rad**2
+        is_seen = t_ns - free.newest_ns <= _HEADING_HOLDS_NS and not engine.is_after_gap
+        known = is_seen and float(cov[5, 5]) < self._settings.heading_known_rad**2
         return Pose(t_ns, nav.p_m, nav.wxyz_site_body, nav.v_m_s, cov, engine.model, known)
 
     def _covariance(self, start: Navigation, end: Navigation) -> Matrix:

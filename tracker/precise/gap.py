@@ -6,6 +6,7 @@ leave open, the first half second afterwards has to tell: gravity the tilt, and 
 """
 
 from math import sqrt
+from typing import Literal
 
 import numpy as np
 
@@ -23,6 +24,8 @@ LONGEST_GAP_NS = 5_000_000_000
 _TURN_RAD, _TILT_RAD, _SPEED_M_S = 0.6, 0.15, 1.0
 #: The mean specific force is taken over this long; a walker's steps leave so much of them in it.
 _LEVEL_NS, _LEVEL_M_S2 = 500_000_000, 0.8
+#: A compass is asked before all directions are tried; not before the tilt is known, since what leans seems to be near iron.
+_COMPASS_NS = 300_000_000
 LEVEL_NOISE: Matrix = _LEVEL_M_S2**2 * np.eye(2)
 #: A heading that is less sure than this afterwards is looked for in all directions.
 _LOST_RAD = 0.35
@@ -74,19 +77,24 @@ def drift(state: ErrorState, noise: ProcessNoise, t_ns: int) -> None:
 
 
 class AfterGap:
-    """The first half second after a gap: the mean specific force, in site by what the filter believes of its attitude."""
+    """The time after a gap: the mean specific force of half a second, in site by what the filter believes of its attitude."""
 
     def __init__(self, t_ns: int) -> None:
         self._until_ns = t_ns + _LEVEL_NS
         self._force = np.zeros(3)
         self._count = 0
+        self.is_level = False
+        """Whether the half second is over: before, nothing that hangs on the tilt is to be believed."""
 
-    def take(self, sample: ImuSample, state: ErrorState) -> bool:
-        """Take a sample, and what the filter believes at its stamp; return whether the half second is over."""
+    def take(self, sample: ImuSample, state: ErrorState) -> Literal["level", "heading"] | None:
+        """Take a sample, and what the filter believes at its stamp; return what is to be done now: `level`, later `heading`."""
+        if self.is_level:
+            return "heading" if sample.t_ns >= self._until_ns + _COMPASS_NS else None
         (ax, ay, az), (bx, by, bz) = sample.accel_m_s2, state.biases.accel_m_s2
         self._force += rotate(state.nav.wxyz_site_body, (ax - bx, ay - by, az - bz))
         self._count += 1
-        return sample.t_ns >= self._until_ns
+        self.is_level = sample.t_ns >= self._until_ns
+        return "level" if self.is_level else None
 
     def level(self) -> Observation:
         """Return the tilt that the mean force wants; its noise is `LEVEL_NOISE`."""

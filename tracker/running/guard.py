@@ -6,8 +6,10 @@ from math import hypot
 from tracker.measurements import GpsFix, GpsVelocity, ImuSample, Measurement, Vector3
 from tracker.soundness import Soundness
 
-#: A sensor's noise makes six equal numbers twice in a row rare; so many times, and for so long, they are not measured.
-_SAMES, _SAME_NS = 10, 100_000_000
+#: A sensor's noise makes six equal numbers twice in a row rare; from so many times on they tell nothing that is new,
+_SAMES = 4
+#: and so many times, and for so long, they are not measured.
+_STUCK_SAMES, _STUCK_NS = 10, 100_000_000
 #: A receiver may repeat a position while the rig stands. While it walks faster than this,
 _WALKS_M_S = 0.5
 #: no position stays the same for so long. And none stays
@@ -43,8 +45,8 @@ class Guard:
         match measurement:
             case ImuSample():
                 count, since_ns = self._imu.count((*measurement.gyro_rad_s, *measurement.accel_m_s2), measurement.t_ns)
-                self.imu_stuck = count >= _SAMES and measurement.t_ns - since_ns >= _SAME_NS
-                return "imu_repeats" if self.imu_stuck else None
+                self.imu_stuck = count >= _STUCK_SAMES and measurement.t_ns - since_ns >= _STUCK_NS
+                return "imu_repeats" if count >= _SAMES else None
             case GpsFix(valid=True):
                 place: Vector3 = (measurement.lat_deg, measurement.lon_deg, measurement.h_ellipsoid_m)
                 _, since_ns = self._gps.count(place, measurement.t_ns)

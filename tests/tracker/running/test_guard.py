@@ -15,21 +15,26 @@ def _fix(second: int, lat_deg: float = 37.9) -> GpsFix:
     return GpsFix(second * S, second * S, lat_deg, 27.3, 80.0, (0.0,) * 9)
 
 
-def test_an_inertial_unit_that_repeats_one_value_is_withheld_after_a_tenth_of_a_second() -> None:
+def test_an_inertial_unit_that_repeats_one_value_is_withheld_at_once_and_stuck_after_a_tenth_of_a_second() -> None:
     """Until it says something else; equal numbers twice are nothing."""
-    guard = Guard()
-    kept = [not guard.withholds(_imu(index), 0.0) for index in range(100)]
-    assert kept.count(True) == 10
-    stuck = [guard.imu_stuck]
+    guard, kept, stuck = Guard(), [], []
+    for index in range(100):
+        kept.append(not guard.withholds(_imu(index), 0.0))
+        stuck.append(guard.imu_stuck)
+    assert kept == [True] * 3 + [False] * 97
+    assert stuck == [False] * 10 + [True] * 90
     assert not guard.withholds(_imu(100, 0.2), 0.0)
-    assert [*stuck, guard.imu_stuck] == [True, False]
-    assert guard.withheld == {"imu_repeats": 90}
+    assert not guard.imu_stuck
+    assert guard.withheld == {"imu_repeats": 97}
 
 
-def test_a_slow_unit_is_given_as_many_samples() -> None:
+def test_a_slow_unit_is_stuck_after_as_many_samples() -> None:
     """At 16 Hz a tenth of a second is two."""
-    guard = Guard()
-    assert not any(guard.withholds(ImuSample(i * S // 16, i * S // 16, (0.0,) * 3, (0.0,) * 3), 0.0) for i in range(9))
+    guard, stuck = Guard(), []
+    for i in range(12):
+        guard.withholds(ImuSample(i * S // 16, i * S // 16, (0.0,) * 3, (0.0,) * 3), 0.0)
+        stuck.append(guard.imu_stuck)
+    assert stuck == [False] * 9 + [True] * 3
 
 
 def test_a_receiver_that_repeats_itself_is_withheld_where_the_rig_walks() -> None:
