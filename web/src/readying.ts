@@ -19,6 +19,9 @@ import {
 
 /** Timers are not faster. */
 const LOOKED_EVERY_MS = 4;
+const LONGEST_MS = 2000;
+/** So long the page's thread asks without a pause. */
+const SLICE_MS = 30;
 /** So many pictures are waited for. */
 const PATIENCE = 5;
 /** three.js throws shadows by the far side of what is seen from one side only: `WebGLShadowMap`. */
@@ -43,12 +46,18 @@ export class Readying {
   async compile(scene: Scene, camera: Camera): Promise<void> {
     this.renderer.compile(scene, camera);
     this.compileShadows(scene, camera);
-    for (const program of (this.renderer.info.programs ?? []) as unknown as Program[]) {
-      if (this.known.has(program)) continue;
+    const programs = ((this.renderer.info.programs ?? []) as unknown as Program[]).filter(
+      (program) => !this.known.has(program),
+    );
+    await this.until(() => programs.every((program) => program.isReady()));
+    await this.idle();
+    let began_ms = performance.now();
+    for (const program of programs) {
       this.known.add(program);
-      while (!program.isReady()) await later();
-      await this.idle();
       program.getUniforms();
+      if (performance.now() - began_ms < SLICE_MS) continue;
+      await pause();
+      began_ms = performance.now();
     }
   }
 
@@ -67,10 +76,18 @@ export class Readying {
     const gl = this.renderer.getContext() as WebGL2RenderingContext;
     const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     if (!fence) return;
-    gl.flush();
-    do await later();
-    while (gl.getSyncParameter(fence, gl.SYNC_STATUS) === gl.UNSIGNALED && !gl.isContextLost());
+    await this.until(() => gl.clientWaitSync(fence, gl.SYNC_FLUSH_COMMANDS_BIT, 0) !== gl.TIMEOUT_EXPIRED);
     gl.deleteSync(fence);
+  }
+
+  /** Resolves when something holds; a card that never says so is not waited for. */
+  private async until(holds: () => boolean): Promise<void> {
+    const gl = this.renderer.getContext();
+    const began_ms = performance.now();
+    do {
+      gl.flush(); // Chromium looks what is done only when it is given something, if another page draws meanwhile
+      await pause();
+    } while (!holds() && performance.now() - began_ms < LONGEST_MS);
   }
 
   private compileShadows(scene: Scene, camera: Camera): void {
@@ -103,6 +120,6 @@ export class Readying {
   }
 }
 
-function later(): Promise<void> {
+function pause(): Promise<void> {
   return new Promise((resolve) => setTimeout(resolve, LOOKED_EVERY_MS));
 }
