@@ -1,7 +1,8 @@
 """A rig without sensors that walks in a circle and tells thirty poses a second, so that where it was at any time is known."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from math import cos, pi, sin
 from pathlib import Path
 from threading import Event, Thread
@@ -53,9 +54,18 @@ def _refuse(request: ControlRequest) -> ControlReply:
     return ControlReply(request.request_id, ok=False, error="This rig does nothing that it is asked.")
 
 
+def standing_at(t_ns: int, seq: int) -> PoseUpdate:
+    """Return the pose that a rig tells that stands: it trembles by two millimetres."""
+    east_m, north_m, up_m = place_at(0.0)
+    place_m = (east_m + 0.002 * sin(seq), north_m + 0.002 * cos(2.0 * seq), up_m)
+    return replace(pose_at(0, seq), t_ns=t_ns, p_site_body_m=place_m, v_site_m_s=(0.0, 0.0, 0.0))
+
+
 @contextmanager
-def strolling(server: LocalServer, name: str = NAME) -> Iterator[RigLink]:
-    """Walk until the block ends."""
+def strolling(
+    server: LocalServer, name: str = NAME, told: Callable[[int, int], PoseUpdate] = pose_at
+) -> Iterator[RigLink]:
+    """Walk until the block ends, or do what else is `told`, by time and number."""
     stop = Event()
     with RigLink(server.rig_url(name), server.rig_token(name), _refuse) as link:
         link.send_state({"kind": "live", "estimator": ESTIMATOR, "estimators": [ESTIMATOR]})
@@ -63,7 +73,7 @@ def strolling(server: LocalServer, name: str = NAME) -> Iterator[RigLink]:
         def walk() -> None:
             seq = 0
             while not stop.wait(1.0 / POSE_HZ):
-                link.send_pose(encode_pose(pose_at(monotonic_ns(), seq)))
+                link.send_pose(encode_pose(told(monotonic_ns(), seq)))
                 seq += 1
 
         walking = Thread(target=walk, name="stroll", daemon=True)

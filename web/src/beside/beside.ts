@@ -4,6 +4,7 @@ import { Group } from "three";
 import type { Directory } from "../browse/directory";
 import { poseOf } from "../browse/eye";
 import type { World } from "../browse/world";
+import type { Vector3 } from "../frames";
 import type { Session } from "../protocol";
 import { Escort, type Way } from "./gaze";
 import { Glide } from "./glide";
@@ -14,6 +15,8 @@ import { Panel } from "./panel";
 
 /** The newest walks: more would need more connections than a phone should hold. */
 const MOST_WALKS = 6;
+/** So often it is looked whether nothing comes any more. */
+const LOOKED_EVERY_MS = 1000;
 
 export class Beside {
   private readonly guests = new Map<string, Guest>();
@@ -41,6 +44,7 @@ export class Beside {
       showing: () => this.tellLook(null),
     });
     world.eachPicture((picture_ms) => this.turn(picture_ms));
+    window.setInterval(() => world.look(), LOOKED_EVERY_MS);
     document.addEventListener("visibilitychange", () => this.tellLook(document.hidden ? null : undefined));
     directory.listen((found) => {
       // without a server who is shown stays, and says of itself that nothing comes
@@ -96,8 +100,11 @@ export class Beside {
             session,
             this.eyeHeight_m,
             this.place,
-            () => this.world.ask(),
-            () => this.tell(),
+            () => this.world.look(),
+            () => {
+              this.tell();
+              this.world.ask();
+            },
           ),
         );
     this.settle();
@@ -119,10 +126,11 @@ export class Beside {
     const guest = this.guests.get(name);
     if (!guest) return;
     const isStill = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    const escort = new Escort(way, this.world.eye, performance.now(), isStill);
+    const reach = (from: Vector3, to: Vector3): number => this.world.reach(from, to);
+    const escort = new Escort(way, this.world.eye, performance.now(), isStill, reach);
     const lead = (picture_ms: number) => {
       const now_ms = this.now(picture_ms);
-      const walker = guest.walk.poses.at(now_ms);
+      const walker = guest.at(now_ms);
       return walker && poseOf(escort.at(walker, now_ms));
     };
     this.world.lead(lead, () => {
@@ -153,7 +161,7 @@ export class Beside {
       const isSelf = this.escort?.name === name && this.escort.escort.way === "eyes";
       const isNew = guest.turn(now_ms, isSelf && this.escort?.escort.isThere(now_ms) ? null : this.world.eye);
       if (isNew && guest === this.mine) this.posesDrawn += 1;
-      moving ||= isNew || guest.walk.isHeard(now_ms);
+      moving ||= guest.moves;
     }
     const seen = this.mine?.walk.others ?? [];
     this.others.show(this.glide.at(seen, now_ms));
@@ -162,7 +170,7 @@ export class Beside {
     const eye = this.world.eye;
     if (this.escort?.escort.way !== "eyes" && this.panel.isShowing && this.looks.isDue(eye, now_ms))
       this.mine?.walk.look(eye);
-    return moving || !this.glide.isAtRest(seen);
+    return moving || this.escort?.escort.isAtRest === false || !this.glide.isAtRest(seen);
   }
 
   private tell(): void {

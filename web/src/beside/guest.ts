@@ -3,9 +3,10 @@
 import type { Group } from "three";
 import type { Eye } from "../browse/eye";
 import type { Session } from "../protocol";
-import { length, minus } from "./between";
+import { length, minus, type Place } from "./between";
 import { Figure } from "./figure";
 import type { Shown } from "./poses";
+import { Rest } from "./rest";
 import { Ribbon } from "./ribbon";
 import { Walk } from "./walk";
 
@@ -13,11 +14,12 @@ export class Guest {
   readonly walk: Walk;
   /** As in the last picture; null while nothing is known. */
   shown: Shown | null = null;
+  private readonly rest = new Rest();
   private readonly figure: Figure;
   private readonly ribbon: Ribbon;
 
-  /** `changed` is called when a picture is wanted, `told` when there is something new to say. */
-  constructor(session: Session, eyeHeight_m: number, place: Group, changed: () => void, told: () => void) {
+  /** `come` is called when a pose has come, `told` when there is something new to say. */
+  constructor(session: Session, eyeHeight_m: number, place: Group, come: () => void, told: () => void) {
     this.figure = new Figure(eyeHeight_m);
     this.ribbon = new Ribbon(eyeHeight_m);
     place.add(this.figure.group, this.ribbon.line);
@@ -25,14 +27,22 @@ export class Guest {
       pose: (pose) => {
         if (pose.soughtJustBefore) this.ribbon.clear();
         this.ribbon.add(pose.p_site_body_m, pose.motionModel);
-        changed();
+        come();
       },
       lens: (lens) => this.figure.showSight(lens),
-      company: () => {
-        changed();
-        told();
-      },
+      company: told,
     });
+  }
+
+  /** Whether the walker is seen to move. */
+  get moves(): boolean {
+    return this.shown !== null && this.rest.moves;
+  }
+
+  /** Return the walker as to be shown at `now_ms`; null while nothing is known. */
+  at(now_ms: number): Shown | null {
+    const shown = this.walk.poses.at(now_ms);
+    return shown && { ...shown, ...placeOf(this.rest.at(shown, now_ms)) };
   }
 
   /**
@@ -41,7 +51,7 @@ export class Guest {
    */
   turn(now_ms: number, eye: Eye | null): boolean {
     const before_ns = this.shown?.t_ns;
-    this.shown = this.walk.poses.at(now_ms);
+    this.shown = this.at(now_ms);
     const { shown } = this;
     if (shown) this.figure.show(shown, eye && length(minus(eye.place_site_m, shown.p_site_body_m)));
     return this.shown !== null && this.shown.t_ns !== before_ns;
@@ -52,4 +62,8 @@ export class Guest {
     this.figure.dispose();
     this.ribbon.dispose();
   }
+}
+
+function placeOf({ p_site_body_m, wxyz_site_body }: Place): Place {
+  return { p_site_body_m, wxyz_site_body };
 }

@@ -1,16 +1,6 @@
 /** The square as it is drawn on the start page, when something asks for it. three.js only. */
 
-import {
-  ACESFilmicToneMapping,
-  Fog,
-  Group,
-  PerspectiveCamera,
-  Raycaster,
-  type Texture,
-  Vector3 as Vector,
-  Vector2,
-  WebGLRenderer,
-} from "three";
+import { ACESFilmicToneMapping, Fog, Group, PerspectiveCamera, type Texture, WebGLRenderer } from "three";
 import type { Standpoint } from "../describe";
 import { T_gltf_site, type Vector3 } from "../frames";
 import type { Square } from "../model";
@@ -23,6 +13,7 @@ import { Controls } from "./controls";
 import { Explorer } from "./explorer";
 import type { Eye } from "./eye";
 import { BEST, Pace, type Step } from "./pace";
+import { Rays } from "./rays";
 import { Veil } from "./veil";
 import type { Leader, Turn, World } from "./world";
 
@@ -53,7 +44,7 @@ export class Stage implements World {
   readonly camera = new PerspectiveCamera(FIELD_DEG, 1, 0.15, 1500);
   readonly guests = new Group();
   readonly explorer: Explorer;
-  private readonly caster = new Raycaster();
+  private readonly rays: Rays;
   private readonly layers = new Map<Square, Layer>();
   private readonly turns = new Set<Turn>();
   private readonly veil = new Veil();
@@ -64,7 +55,9 @@ export class Stage implements World {
   private above: Layer | null = null;
   private share = 0;
   private fades = false;
+  /** Whether the next turn is under way, and whether it must end in a picture. */
   private asked = false;
+  private wanted = false;
   private guestsMove = false;
   private isHurried = false;
   private fineness = 1;
@@ -95,6 +88,7 @@ export class Stage implements World {
     this.inSoftware = drawsInSoftware(this.renderer);
     this.pace = new Pace(this.inSoftware);
     this.readying = new Readying(this.renderer);
+    this.rays = new Rays(this.camera, canvas);
     // blurring what is behind the panels costs as much as drawing the model
     document.body.classList.toggle("frugal", this.inSoftware);
     this.guests.matrixAutoUpdate = false;
@@ -114,7 +108,7 @@ export class Stage implements World {
   /** Whether all that was asked for is drawn, as finely as it can be; what moves by itself never is. */
   get isSettled(): boolean {
     return (
-      (this.guestsMove || (!this.asked && this.resting === null && this.compiling === 0)) && !this.explorer.isFlying
+      (this.guestsMove || (!this.wanted && this.resting === null && this.compiling === 0)) && !this.explorer.isFlying
     );
   }
 
@@ -179,33 +173,38 @@ export class Stage implements World {
   }
 
   ask(): void {
+    this.wanted = true;
+    this.look();
+  }
+
+  look(): void {
     if (!this.asked) requestAnimationFrame((now_ms) => this.draw(now_ms));
     this.asked = true;
   }
 
+  reach(from: Vector3, to: Vector3): number {
+    return this.front ? this.rays.reach(this.front, from, to) : Number.POSITIVE_INFINITY;
+  }
+
   /** Return what is drawn at a point of the window. */
   at(point: { readonly clientX: number; readonly clientY: number }): Thing | null {
-    this.aim(point);
-    return this.front?.find(this.caster) ?? null;
+    return this.front?.find(this.rays.through(point)) ?? null;
   }
 
   /** Return the place that is drawn at a point of the window; null for the sky. */
   placeAt(point: { readonly clientX: number; readonly clientY: number }): Vector3 | null {
-    this.aim(point);
-    const hit = this.front?.hit(this.caster);
+    const hit = this.front?.hit(this.rays.through(point));
     return hit ? [hit.x, -hit.z, hit.y] : null;
   }
 
   /** Return the point of the window where a place is drawn, pixels; null where it lies behind. */
-  pointOf([e, n, u]: Vector3): readonly [number, number] | null {
-    const at = new Vector(e, u, -n).project(this.camera);
-    if (at.z > 1) return null;
-    return [((at.x + 1) / 2) * this.canvas.clientWidth, ((1 - at.y) / 2) * this.canvas.clientHeight];
+  pointOf(place_site_m: Vector3): readonly [number, number] | null {
+    return this.rays.pointOf(place_site_m);
   }
 
   /** Return the height of the drawn ground at a place of the plan; null where there is none. */
   groundAt(e_m: number, n_m: number): number | null {
-    return this.front?.groundAt(e_m, -n_m, this.caster) ?? null;
+    return this.front?.groundAt(e_m, -n_m, this.rays.caster) ?? null;
   }
 
   /** Resolve when something has been drawn. */
@@ -270,15 +269,6 @@ export class Stage implements World {
     return layer;
   }
 
-  private aim({ clientX, clientY }: { readonly clientX: number; readonly clientY: number }): void {
-    this.camera.updateMatrixWorld();
-    const { clientWidth, clientHeight } = this.canvas;
-    this.caster.setFromCamera(
-      new Vector2((2 * clientX) / clientWidth - 1, 1 - (2 * clientY) / clientHeight),
-      this.camera,
-    );
-  }
-
   private fill(): void {
     const { canvas, camera } = this;
     camera.aspect = canvas.clientWidth / Math.max(1, canvas.clientHeight);
@@ -304,7 +294,8 @@ export class Stage implements World {
   }
 
   private draw(now_ms: number): void {
-    this.asked = false;
+    const isWanted = this.wanted;
+    this.asked = this.wanted = false;
     const before = this.camera.matrixWorld.clone();
     const goesOn = this.explorer.turn(now_ms);
     this.guestsMove = false;
@@ -318,6 +309,7 @@ export class Stage implements World {
       this.moved_ms = now_ms;
     }
     this.drawn_ms = isMoving ? now_ms : null;
+    if (!isWanted && !isMoving && !goesOn) return;
     const isReady = this.isReady();
     const rests = this.pace.step === BEST || (isReady && now_ms - this.moved_ms >= REST_MS && this.isFinest());
     this.take(rests ? BEST : this.pace.step);

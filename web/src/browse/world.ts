@@ -9,7 +9,7 @@
  */
 
 import type { Group, PerspectiveCamera } from "three";
-import type { Matrix4 } from "../frames";
+import type { Matrix4, Vector3 } from "../frames";
 import type { Eye } from "./eye";
 
 /** Called before each picture; returns whether it wants another one after it. */
@@ -27,6 +27,10 @@ export interface World {
   readonly eye: Eye;
   /** Ask for a picture. */
   ask(): void;
+  /** Something may have changed: the turns are taken, and a picture comes where one says that it moves. */
+  look(): void;
+  /** Return how far one sees from a place towards another, metres; infinite where nothing stands between. */
+  reach(from: Vector3, to: Vector3): number;
   /** Take part in each picture; returns what ends it. */
   eachPicture(turn: Turn): () => void;
   /**
