@@ -14,7 +14,7 @@ from tests.tracker.running.walking import rows_of
 from tests.walks import write_walk
 from tracker.assembly import assemble
 from tracker.errors import InputError, SourceLost
-from tracker.estimator import Pose
+from tracker.estimator import Innovation, Pose
 from tracker.evaluate import make_pipeline
 from tracker.log import Log
 from tracker.measurements import (
@@ -187,7 +187,11 @@ class Failing:
     def predict(self, t_ns: int) -> None:
         """Know nothing."""
 
-    innovations = snapshot = restore = predict
+    snapshot = restore = predict
+
+    def innovations(self) -> list[Innovation]:
+        """Have none."""
+        return []
 
 
 def test_an_estimator_that_fails_is_begun_anew(caplog: pytest.LogCaptureFixture) -> None:
