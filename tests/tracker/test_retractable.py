@@ -10,6 +10,7 @@ from tracker.retractable import KEPT_S, MOST, Retractable
 from tracker.simulate import START_NS
 
 SAID = (Sighting, Standpoint)
+BEGUN_NS = min(m.t_recv_ns for m in stream() if isinstance(m, SAID)) - S
 END_NS = max(m.t_ns for m in stream())
 
 
@@ -18,11 +19,23 @@ def retractable() -> Retractable:
     return Retractable(lambda: estimator(NAMES[1]))
 
 
+@cache
+def begun() -> object:
+    """Return the snapshot of one that has been fed what was measured before anything was said."""
+    one = retractable()
+    for measurement in stream():
+        if measurement.t_recv_ns < BEGUN_NS:
+            one.step(measurement)
+    return one.snapshot()
+
+
 def end(of: Iterable[Measurement]) -> tuple[object, ...]:
     """Return the last pose."""
     one = retractable()
+    one.restore(begun())
     for measurement in of:
-        one.step(measurement)
+        if measurement.t_recv_ns >= BEGUN_NS:
+            one.step(measurement)
     return row(one.predict(END_NS))
 
 
