@@ -74,6 +74,6 @@ test("each step up draws at least what the one below draws", () => {
     expect(effort.fineness).toBeGreaterThanOrEqual(below.fineness);
     for (const key of ["shadows", "occluders", "soft"] as const)
       expect(Number(effort[key])).toBeGreaterThanOrEqual(Number(below[key]));
-    for (const key of ["plain", "coarse"] as const) expect(Number(effort[key])).toBeLessThanOrEqual(Number(below[key]));
+    for (const key of ["plain", "finest"] as const) expect(Number(effort[key])).toBeLessThanOrEqual(Number(below[key]));
   }
 });

@@ -80,6 +80,7 @@ export class Drawing {
     renderer.setClearColor(0x000000, 0);
     renderer.clear();
     renderer.render(square.scene, camera);
+    renderer.shadowMap.needsUpdate = false; // three leaves it where no light throws shadows
     renderer.setClearColor(BACKGROUND, 1);
     const { calls, triangles } = renderer.info.render;
     if (!shadowsToo || this.cost.calls === 0) this.cost = { calls, triangles };

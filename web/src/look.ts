@@ -16,6 +16,8 @@ const MOVED_RAD = (0.5 * Math.PI) / 180;
 const METERED_EVERY_MS = 200;
 const METERED_PX = [32, 24] as const;
 const TIMED_EVERY = 4;
+/** A picture whose drawing takes less of its time than this was late by its decoding: drawing less would not help. */
+const DRAWN_SHARE = 1 / 3;
 
 export class Look {
   square: Square | null = null;
@@ -87,7 +89,7 @@ export class Look {
     this.composite.gain = this.matching.take(gainFor(mean, real ? lightOf(real) / USUAL_LIGHT : 1), now_ms);
   }
 
-  /** Time the picture that was drawn just now, and draw more or less from the next on. */
+  /** Time the picture that was decoded at `began_ms` and drawn just now, and draw more or less from the next on. */
   after(began_ms: number, arrived_ms: number): void {
     this.count += 1;
     if (!this.timed && this.count % TIMED_EVERY !== 0) return;
@@ -97,7 +99,8 @@ export class Look {
       this.timed.tell([...this.arrivals_ms]);
       this.timed = null;
     }
-    if (!this.square || !this.quality.drawn(now_ms - began_ms, now_ms)) return;
+    const took_ms = Math.min(now_ms - arrived_ms, (now_ms - began_ms) / DRAWN_SHARE);
+    if (!this.square || this.square.isLoading || !this.quality.drawn(took_ms, now_ms)) return;
     this.composite.work(this.effort);
     this.square.work(this.effort);
   }

@@ -28,9 +28,9 @@ import type { Thing } from "./thing";
 const UNTOLD = new Color(0.62, 0.62, 0.6);
 
 /** How it is drawn. */
-type Drawn = Pick<Effort, "plain" | "shadows" | "occluders" | "coarse">;
+type Drawn = Pick<Effort, "plain" | "shadows" | "occluders" | "finest">;
 /** Where nobody chooses. */
-const ALL: Drawn = { plain: false, shadows: true, occluders: true, coarse: false };
+const ALL: Drawn = { plain: false, shadows: true, occluders: true, finest: 0 };
 
 /** All that changes its level together: a monument, or a piece of ground. */
 interface Group {
@@ -58,8 +58,11 @@ export class Square {
   private occluders: Group3D | null = null;
   private readonly hideBackdrop: boolean;
   private readonly materials: string | null;
-  private refining: Promise<void> | null = null;
-  private whole = false;
+  private refining: Promise<void> = Promise.resolve();
+  /** The finest level that was asked for. */
+  private asked: number;
+  private loading = 0;
+  private whole: boolean;
   private effort: Drawn = ALL;
 
   /** `levels` are the model's files, the finest first; the last one is in `first`. */
@@ -71,6 +74,8 @@ export class Square {
     groundShare: number,
   ) {
     this.hideBackdrop = groundShare < 1;
+    this.asked = levels.length - 1;
+    this.whole = this.asked === 0;
     const extras = (first.asset["extras"] ?? {}) as Readonly<Record<string, unknown>>;
     if (Array.isArray(extras["level_reach_m"])) this.reach_m = extras["level_reach_m"] as number[];
     this.posts = file.posts;
@@ -89,12 +94,17 @@ export class Square {
     return new Square(levels, loaded, await batched(loaded, surfaces, async () => undefined), surfaces, groundShare);
   }
 
-  /** Load the finer levels and the full textures; resolves when all are in, or have failed. */
-  refine(): Promise<void> {
-    this.refining ??= this.loadFiner().then(() => {
-      this.whole = true;
-      this.changed();
-    });
+  /** Load the levels down to this one, for all of them the full textures, too; resolves when they are in, or have failed. */
+  refine(finest = 0): Promise<void> {
+    if (this.asked <= finest) return this.refining;
+    const levels: number[] = [];
+    while (this.asked > finest) levels.push(--this.asked);
+    this.loading += 1;
+    this.refining = this.refining
+      .then(() => this.load(levels))
+      .then(() => {
+        this.loading -= 1;
+      });
     return this.refining;
   }
 
@@ -103,14 +113,18 @@ export class Square {
     return this.whole;
   }
 
+  /** Whether something finer is coming in just now: that slows the pictures down. */
+  get isLoading(): boolean {
+    return this.loading > 0;
+  }
+
   /** Choose every thing's level for an eye at this place, gltf axes; return whether anything has changed. */
   update(eye: Vector3): boolean {
     this.eye.copy(eye);
     let changed = false;
     for (const group of this.groups.values()) {
-      const coarsest = this.levels.length - 1;
-      const wanted = this.effort.coarse ? coarsest : levelAt(group.box.distanceToPoint(eye), this.reach_m, group.level);
-      const level = bestOf(wanted, [...group.levels.keys()]);
+      const wanted = levelAt(group.box.distanceToPoint(eye), this.reach_m, group.level);
+      const level = bestOf(Math.max(this.effort.finest, wanted), [...group.levels.keys()]);
       if (level === group.level) continue;
       group.level = level;
       showGroup(group);
@@ -162,7 +176,7 @@ export class Square {
     for (const { objects } of this.files) this.clothe(objects);
     this.update(this.eye);
     this.changed();
-    if (!effort.coarse) void this.refine();
+    void this.refine(effort.finest);
   }
 
   /** Draw what stands today into the depth alone: the model is not seen behind it. */
@@ -211,25 +225,29 @@ export class Square {
     this.surfaces.dispose();
   }
 
-  private async loadFiner(): Promise<void> {
-    const { levels, materials } = this;
-    const finer = levels.map((url, level): [number, string] => [level, url]).slice(0, -1);
+  private async load(levels: readonly number[]): Promise<void> {
     try {
-      if (materials !== null) {
-        const [base] = levels as [string];
-        const full = await loader.loadAsync(new URL(materials, new URL(base, location.href)).href);
-        await this.surfaces.refine(full, (pictures) => this.pause(pictures));
-        this.changed();
-      }
-      for (const [level, url] of finer.reverse()) {
-        const file = await batched(await loader.loadAsync(url), this.surfaces, (objects) => this.lay(objects));
-        this.take(file, level);
+      if (levels.includes(0)) await this.loadSurfaces();
+      for (const level of levels) {
+        const gltf = await loader.loadAsync(this.levels[level] ?? "");
+        this.take(await batched(gltf, this.surfaces, (objects) => this.lay(objects)), level);
         this.update(this.eye);
         this.changed();
       }
     } catch (error) {
       console.warn("the square stays coarser than it could be", error); // what is there is worth seeing
     }
+    if (!levels.includes(0)) return;
+    this.whole = true;
+    this.changed();
+  }
+
+  private async loadSurfaces(): Promise<void> {
+    if (this.materials === null) return;
+    const [base] = this.levels as [string];
+    const full = await loader.loadAsync(new URL(this.materials, new URL(base, location.href)).href);
+    await this.surfaces.refine(full, (pictures) => this.pause(pictures));
+    this.changed();
   }
 
   /** Put what is not shown yet into the scene. */

@@ -17,9 +17,12 @@ export interface Effort {
   readonly occluders: boolean;
   /** Whether the edges of what hides the model are softened. */
   readonly soft: boolean;
-  /** The coarsest level of the model alone, or finer ones near by. */
-  readonly coarse: boolean;
+  /** The finest level of the model that is drawn near by: 0 is the finest of all. */
+  readonly finest: number;
 }
+
+/** Of whatever levels there are. */
+export const COARSEST = Number.POSITIVE_INFINITY;
 
 const FIRST: Effort = {
   name: "first paint",
@@ -29,25 +32,25 @@ const FIRST: Effort = {
   shadows: false,
   occluders: false,
   soft: false,
-  coarse: true,
+  finest: COARSEST,
 };
 
 /** From the cheapest to the best. */
 export const EFFORTS: readonly Effort[] = [
   FIRST,
   { ...FIRST, name: "occluders", occluders: true },
-  { ...FIRST, name: "shadows", occluders: true, shadows: true },
-  { ...FIRST, name: "soft edges", occluders: true, shadows: true, soft: true, fineness: 0.75 },
-  { ...FIRST, name: "surfaces", occluders: true, shadows: true, soft: true, fineness: 1, plain: false },
-  { name: "full", fineness: 1, samples: 4, plain: false, shadows: true, occluders: true, soft: true, coarse: false },
+  { ...FIRST, name: "shadows", occluders: true, shadows: true, finest: 1 },
+  { ...FIRST, name: "soft edges", occluders: true, shadows: true, finest: 1, soft: true, fineness: 0.75 },
+  { ...FIRST, name: "surfaces", occluders: true, shadows: true, finest: 1, soft: true, fineness: 1, plain: false },
+  { name: "full", fineness: 1, samples: 4, plain: false, shadows: true, occluders: true, soft: true, finest: 0 },
 ];
 
 /** Slower than this, p50, a step is left: pictures come at 25 a second. */
-const SLOW_MS = 36;
+const SLOW_MS = 38;
 /** Twice as slow as this is left at once. */
 const AWFUL_MS = 80;
 /** Faster than this there is time for the next step. */
-const SPARE_MS = 24;
+const SPARE_MS = 30;
 const LOOKED_AT = 8;
 const FIRST_PATIENCE_MS = 20_000;
 const MOST_PATIENCE_MS = 640_000;
@@ -75,7 +78,7 @@ export class Quality {
     return [...this.times_ms].sort((a, b) => a - b)[LOOKED_AT >> 1] ?? null;
   }
 
-  /** Take note of what a picture has cost from its arrival in the renderer to its last pixel; true where the step changes. */
+  /** Take note of how long a picture took from its arrival to its last pixel; true where the step changes. */
   drawn(took_ms: number, now_ms: number): boolean {
     this.times_ms.push(took_ms);
     if (this.times_ms.length > LOOKED_AT) this.times_ms.shift();

@@ -4,6 +4,7 @@ import { ACESFilmicToneMapping, Fog, Group, PerspectiveCamera, type Texture, Web
 import type { Standpoint } from "../describe";
 import { T_gltf_site, type Vector3 } from "../frames";
 import type { Square } from "../model";
+import { COARSEST } from "../quality";
 import { Readying } from "../readying";
 import { Sky } from "../sky";
 import { drawsInSoftware } from "../software";
@@ -361,7 +362,7 @@ export class Stage implements World {
   private dress(layer: Layer, plain: boolean): void {
     layer.plain = plain;
     this.isDressing = true;
-    layer.square.work({ plain, coarse: plain, shadows: true, occluders: true });
+    layer.square.work({ plain, finest: plain ? COARSEST : 0, shadows: true, occluders: true });
     this.isDressing = false;
   }
 
