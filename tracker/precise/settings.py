@@ -80,7 +80,7 @@ class PreciseSettings:
     """Of a direction of travel, at best;"""
     vision_point_px: float = 0.15
     """and this by the parallax in pixels, where that is worse. The further off one is the less it counts: a few are wrong."""
-    blend_s: float = 1.8
+    blend_s: float = 2.2
     """A correction moves what is shown with this time constant: a temple that jumps is worse than one that is off."""
     blend_turn_s: float = 0.6
     """... and with this one it turns what is shown."""
