@@ -89,9 +89,10 @@ paper: setup $(BIN)/.dev ## measure all of the paper and write docs/paper.md ane
 wire: $(BIN)/.demo ## write the page's types of the messages anew, from server/messages.py
 	@$(BIN)/python -m server.typescript
 
-gallery: setup $(BIN)/.dev ## draw docs/gallery.md and the golden pictures of the tests anew, in a browser
+gallery: setup $(BIN)/.dev ## draw docs/gallery.md and all golden pictures of the tests anew, in a browser
 	@$(BIN)/python -m tests.web.gallery
 	@$(BIN)/python -m tests.web.ar_gallery
+	@$(BIN)/python -m tests.web.page_gallery
 
 fuzz: $(BIN)/.dev ## fuzz the readers of NMEA and of logs; ARGS="nmea --runs 1000000" for one of them, longer
 	@$(BIN)/python -m tests.fuzz $(ARGS)

@@ -35,7 +35,7 @@ def entrance_routes(access: Access) -> APIRouter:
     @router.get("/enter", include_in_schema=False)
     async def enter(request: Request, code: str | None = None) -> Response:
         if code is None:
-            return _page(request, "Show what its operator gave you.")
+            return _page(request, "Enter with what this server's operator gave you.")
         return _admit(access, request, code)
 
     @router.post("/enter", include_in_schema=False)

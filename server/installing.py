@@ -73,6 +73,7 @@ def _body(language: str, url: str, code: str, authority: LocalAuthority) -> str:
     return (
         f"<h1>{say('Let this device trust Agora')}</h1>"
         f"<p>{say('Open this page on the phone or tablet: scan the code, or go to')} <code>{escape(url)}</code></p>{code}"
-        f'<ol><li><a href="/agora.crt">{say("Load the certificate")}</a>.</li><li>{escape(apple)}<br>{escape(android)}</li>'
+        f'<ol><li><a class="go" href="/agora.crt">{say("Load the certificate")}</a></li>'
+        f"<li>{escape(apple)}<br>{escape(android)}</li>"
         f"<li>{compare}<br><code>{authority.fingerprint}</code></li></ol><p>{end}</p>"
     )

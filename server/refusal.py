@@ -15,17 +15,24 @@ from server.plain_page import plain_page
 _NOT_HERE: Final = "There is nothing at this address. The square is on the start page."
 
 
-def refusal(headers: Headers, status: int, sentence: str) -> Response:
-    """Return a sentence as a page where a browser asks for one, else as plain text; `headers` are the request's."""
+def refusal(headers: Headers, status: int, sentence: str, *, offers_way: bool = False) -> Response:
+    """Return a sentence as a page where a browser asks for one, else as plain text.
+
+    Args:
+        headers: The request's.
+        status: The response's.
+        sentence: What is the matter, in English.
+        offers_way: Whether the page leads to the square, and to the way in where that may help.
+    """
     if not _wants_page(headers):
         return PlainTextResponse(sentence, status)
     language = language_of(headers.get("accept-language"))
     say = speaking(language)
     title = _title(status, say)
-    way_on = f'<a class="go" href="/enter">{say("Enter")}</a>' if status == 401 else ""
-    if status in (401, 404):
-        way_on += f'<a class="go" href="/">{say("To the square")}</a>'
-    body = f"<h1>{escape(title)}</h1><p>{escape(say(sentence))}</p>{way_on}"
+    ways = {"/enter": say("Enter")} if status in (401, 403) else {}
+    ways["/"] = say("To the square")
+    links = "".join(f'<a class="go" href="{path}">{words}</a>' for path, words in ways.items()) if offers_way else ""
+    body = f"<h1>{escape(title)}</h1><p>{escape(say(sentence))}</p>{links}"
     return plain_page(language, f"Agora · {title}", body, status=status)
 
 
@@ -43,7 +50,7 @@ def add_refusals(app: FastAPI) -> None:
             404: say(_NOT_HERE),
         }
         otherwise = say("That did not work: try again in a moment.")
-        response = refusal(request.headers, exc.status_code, sentences.get(exc.status_code, otherwise))
+        response = refusal(request.headers, exc.status_code, sentences.get(exc.status_code, otherwise), offers_way=True)
         response.headers.update(exc.headers or {})
         return response
 

@@ -10,7 +10,7 @@ TEXTS: Final[Mapping[str, str]] = MappingProxyType(
         "Agora · enter": "Agora · giriş",
         "Token or code": "Anahtar ya da kod",
         "Enter": "Gir",
-        "Show what its operator gave you.": "Görevlinin size verdiğini gösterin.",
+        "Enter with what this server's operator gave you.": "Bu sunucunun görevlisinin size verdiğiyle girin.",
         "This token is not one of this server's: ask its operator for another.": (
             "Bu anahtar bu sunucunun değil: görevliden başka bir tane isteyin."
         ),

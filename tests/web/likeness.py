@@ -13,6 +13,11 @@ MOST_DIFFERENCE = 8.0
 LEAST_LIKENESS = 0.85
 """Of local structure, 1 for the same."""
 
+MOST_BLEMISH = 12.0
+"""Of 255, of the part that differs most: a control that is gone or moved is above it, how a picture is kept changes less than 8."""
+_PART_PX = 4
+"""Side of such a part, once a picture is small: 16 pixels of the picture as it is kept."""
+
 
 def kept(path: Path, make: str) -> Picture:
     """Return a golden picture; `make` is the command that makes it."""
@@ -30,6 +35,12 @@ def small(picture: Picture) -> NDArray[np.float64]:
 def difference(a: Picture, b: Picture) -> float:
     """Return the mean difference of two pictures, 0 to 255."""
     return float(np.abs(small(a) - small(b)).mean())
+
+
+def blemish(a: Picture, b: Picture) -> float:
+    """Return the mean difference of that part of two pictures which differs most, 0 to 255."""
+    far = np.abs(small(a) - small(b)).mean(axis=2)
+    return float(cv2.blur(far, (_PART_PX, _PART_PX)).max())
 
 
 def likeness(a: Picture, b: Picture) -> float:

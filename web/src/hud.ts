@@ -52,7 +52,10 @@ export class Hud {
 
   /** Say what stands in the way, or nothing. */
   say(situation: Situation): void {
-    tell(this.notice, sentenceFor(situation));
+    const sentence = sentenceFor(situation);
+    tell(this.notice, sentence);
+    // the news of a trouble is its own sentence: once is enough
+    if (sentence !== null && this.toast.textContent === sentence) tell(this.toast, null);
   }
 
   /** Show an error, or news, for a few seconds. */

@@ -30,6 +30,8 @@ export class Guide {
     element("tour-next", HTMLButtonElement).onclick = () => this.move(1);
     element("tour-end", HTMLButtonElement).onclick = () => this.end();
     this.play.onclick = () => this.toggle();
+    // on a small screen it scrolls, by keys too
+    element("tour-text", HTMLElement).tabIndex = 0;
     this.show();
   }
 

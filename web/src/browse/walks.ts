@@ -29,8 +29,8 @@ function linkTo(session: Session): HTMLAnchorElement {
   const detail = document.createElement("span");
   detail.textContent = isReplay ? clockText(session.duration_s) : say("live.now");
   const what = isReplay
-    ? say("live.replay", { name: session.log ?? session.name })
-    : say("live.join", { name: session.name });
+    ? say("live.replay", { name: session.title ?? session.log ?? session.name })
+    : say("live.join", { name: session.title ?? session.name });
   link.append(what, detail);
   return link;
 }
