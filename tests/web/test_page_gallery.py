@@ -69,13 +69,16 @@ def test_no_text_of_a_page_is_in_one_language_alone(visits: dict[str, Visit]) ->
 
 @pytest.mark.parametrize("name", KINDS)
 def test_no_state_of_a_page_passes_for_another(name: str) -> None:
-    pictures = {path.stem: golden(path.stem) for path in sorted(GOLDEN.glob(f"{name}.*.webp"))}
-    states = [state.name for state in KINDS[name].states]
+    """In each language a wide picture, or the one in the glare theme, is another."""
     for language in LANGUAGES:
-        wide = [(state, pictures[f"{name}.{state}.{language}.plain.wide"]) for state in states]
-        for index, (state, picture) in enumerate(wide):
-            for other, another in wide[index + 1 :]:
-                assert blemish(picture, another) > MOST_BLEMISH, (state, other)
+        shown = [
+            (state.name, [golden(f"{name}.{state.name}.{language}.{look}") for look in looks])
+            for state in KINDS[name].states
+            for looks in [("plain.wide", "glare.narrow" if state.narrow else "glare.wide")]
+        ]
+        for index, (state, pictures) in enumerate(shown):
+            for other, others in shown[index + 1 :]:
+                assert max(map(blemish, pictures, others)) > MOST_BLEMISH, (state, other)
 
 
 def test_all_that_is_kept_is_compared_and_it_is_little() -> None:

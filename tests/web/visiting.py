@@ -92,6 +92,9 @@ WebGL2RenderingContext.prototype.getExtension = function (name) {
 };
 """
 """Nothing is drawn in three dimensions: it is not looked at, and in software it takes longer than everything else."""
+_DRAWN: Final = """() => new Promise((resolve) =>
+    requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(resolve))))"""
+"""What follows the page's size has been drawn in it: curves, the strip of a replay."""
 _HOLD: Final = """() => { const now = performance.now(); let late = 0;
     performance.now = () => now + 1000 * late;
     globalThis.late = (seconds) => { late += seconds; };
@@ -246,6 +249,7 @@ def _look(page: ArPage, kind: Kind, state: State, language: str, found: Visit) -
         if size == "narrow" and not state.narrow:
             continue
         page.page.set_viewport_size({"width": width, "height": height})
+        page.ask(_DRAWN)
         amiss += [f"{size}: {what}" for script in (_SMALL, _CUT) for what in page.ask(script)]
         last = "narrow" if state.narrow else "wide"
         for theme in THEMES if size == last else THEMES[:1]:
