@@ -26,7 +26,7 @@ export const COARSEST = Number.POSITIVE_INFINITY;
 
 const FIRST: Effort = {
   name: "first paint",
-  fineness: 0.5,
+  fineness: 0.4,
   samples: 0,
   plain: true,
   shadows: false,
@@ -38,8 +38,8 @@ const FIRST: Effort = {
 /** From the cheapest to the best. */
 export const EFFORTS: readonly Effort[] = [
   FIRST,
-  { ...FIRST, name: "occluders", occluders: true },
-  { ...FIRST, name: "shadows", occluders: true, shadows: true, finest: 1 },
+  { ...FIRST, name: "occluders", occluders: true, fineness: 0.5 },
+  { ...FIRST, name: "shadows", occluders: true, fineness: 0.5, shadows: true, finest: 1 },
   { ...FIRST, name: "soft edges", occluders: true, shadows: true, finest: 1, soft: true, fineness: 0.75 },
   { ...FIRST, name: "surfaces", occluders: true, shadows: true, finest: 1, soft: true, fineness: 1, plain: false },
   { name: "full", fineness: 1, samples: 4, plain: false, shadows: true, occluders: true, soft: true, finest: 0 },
