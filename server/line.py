@@ -2,6 +2,7 @@
 more than the sending. For one event loop, no locks.
 """
 
+from asyncio import Transport
 from collections.abc import Callable
 from functools import lru_cache
 from typing import Final
@@ -20,7 +21,7 @@ class SocketLine:
         self._protocol, self._transport = protocol, protocol.transport
         self.on_free: Callable[[], None] = _nothing
         # what does not go at once counts as waiting: a pose must not queue behind another
-        self._transport.set_write_buffer_limits(high=0)
+        _hold_nothing(self._transport)
 
     def free(self) -> bool:
         """Whether all that was sent before has gone."""
@@ -51,6 +52,14 @@ def line_of(scope: Scope) -> SocketLine:
     line = scope["extensions"][_EXTENSION]
     assert isinstance(line, SocketLine), "only `web_server.WebServer` serves these routes"
     return line
+
+
+def _hold_nothing(transport: Transport) -> None:
+    # by TLS, asyncio takes a buffer that is as full as its limit for too full: an empty one must not be
+    transport.set_write_buffer_limits(high=1, low=0)
+    beneath = getattr(getattr(transport, "_ssl_protocol", None), "_transport", None)
+    if beneath is not None:  # else 64 kB would wait there, unseen
+        beneath.set_write_buffer_limits(high=0)
 
 
 @lru_cache(maxsize=4, typed=True)
