@@ -234,8 +234,9 @@ class Engine:
 
     def _go_on(self, filter_: ErrorState) -> Correction:
         seen, noise = self._stride.onward(self._activity.force_spread_m_s2, filter_, self._settings)
-        # who looks where they do not go must not turn north
-        return filter_.correct(*seen, noise, gated=False, tells_north=False)
+        # who looks where they do not go must not turn north; of a rig held in the hands nothing is known but that it stays
+        tells_north = self._tells_north and not self._stride.is_learned
+        return filter_.correct(*seen, noise, gated=False, tells_north=tells_north)
 
     def _is_blind(self, t_ns: int) -> bool:
         """Whether the receiver has been silent for longer than its usual second."""

@@ -61,6 +61,11 @@ class Stride:
         self._n, self._x, self._xx = _KEPT * self._n + 1.0, _KEPT * self._x + x, _KEPT * self._xx + x * x
         self._y, self._xy = _KEPT * self._y + y, _KEPT * self._xy + x * y
 
+    @property
+    def is_learned(self) -> bool:
+        """Whether somebody has walked while the velocity was known."""
+        return self._steps > 0.0
+
     def speed_m_s(self, spread_m_s2: float) -> float:
         """Return the speed that goes with a spread of the force."""
         (level, slope), (level_worth, slope_worth) = _PRIOR, _PRIOR_WORTH
@@ -72,7 +77,7 @@ class Stride:
 
     def onward(self, spread_m_s2: float, state: ErrorState, settings: PreciseSettings) -> tuple[Observation, Matrix]:
         """Return what is to be expected of the velocity now, and its noise, (3, 3): speed, course (rad), and upwards."""
-        if spread_m_s2 < GAIT_STD_M_S2 or not self._steps:
+        if spread_m_s2 < GAIT_STD_M_S2 or not self.is_learned:
             sigma = min(_HELD_M_S + _HELD_S * spread_m_s2, _MOST_M_S)
             return (-np.array(state.nav.v_m_s), [(V, np.eye(3))]), sigma**2 * np.eye(3)
         told, sigma = self.speed_m_s(spread_m_s2), self._sigma_m_s(settings)
