@@ -9,7 +9,7 @@ Reference:
 
 from math import atan2, cos, hypot, sin
 
-from tracker.geometry import wrap_rad
+from tracker.geometry import wrap_rad, yaw_of
 from tracker.measurements import Vector3, Wxyz
 from tracker.pace import WALKING_M_S
 
@@ -33,7 +33,7 @@ class Facing:
         vx, vy, _ = v_site_m_s
         if hypot(vx, vy) < WALKING_M_S:
             return
-        aside_rad = wrap_rad(atan2(vy, vx) - _yaw_of_facing(wxyz_site_body))
+        aside_rad = wrap_rad(atan2(vy, vx) - yaw_of(wxyz_site_body))
         off_rad = wrap_rad(aside_rad - self.aside_rad)
         weight = 1.0 / (1.0 + (off_rad / _NEAR_RAD) ** 2)
         self._ahead = _KEPT * self._ahead + weight * cos(aside_rad)
@@ -52,10 +52,5 @@ class Facing:
         return _NEAR_RAD * (1.0 - near) / near
 
     def course_rad(self, wxyz_site_body: Wxyz) -> float:
-        """Return where to one goes who faces there, counter-clockwise from east."""
-        return _yaw_of_facing(wxyz_site_body) + self.aside_rad
-
-
-def _yaw_of_facing(wxyz_site_body: Wxyz) -> float:
-    w, x, y, z = wxyz_site_body
-    return atan2(2.0 * (x * y + w * z), 1.0 - 2.0 * (y * y + z * z))
+        """Return which way one goes who faces there, counter-clockwise from east."""
+        return yaw_of(wxyz_site_body) + self.aside_rad
