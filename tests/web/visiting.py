@@ -157,7 +157,6 @@ class Visit:
     """By state: what axe-core calls serious or critical, what a finger misses, what does not fit."""
     said: dict[str, list[str]] = field(default_factory=dict)
     """By state: every text that is seen or read out."""
-    errors: list[str] = field(default_factory=list)
 
 
 @cache
@@ -185,7 +184,6 @@ def visit(browser: Browser, url: str, kind: Kind, language: str) -> Visit:
         for state in kind.states:
             _enter(page, telling, state)
             _look(page, kind, state, language, found)
-        found.errors = page.errors
         return found
     finally:
         context.close()
