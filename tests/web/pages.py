@@ -92,7 +92,7 @@ class ArPage:
 
     def state(self) -> Any:
         """Return what the page knows, for a failing test to print."""
-        return self.ask("[globalThis.agora?.stats(), globalThis.agora?.session?.(), document.body.innerText]")
+        return self.ask("[globalThis.agora?.stats(), globalThis.agora?.session?.(), document.body?.innerText]")
 
     def stats(self) -> dict[str, Any]:
         """Return `agora.stats()`."""

@@ -6,13 +6,14 @@ from base64 import b64encode
 from collections.abc import Iterator
 from hashlib import sha256
 from pathlib import Path
+from time import monotonic
 
 import pytest
 from playwright.sync_api import Browser
 
 from server.replay import ReplaySettings
 from server.showing import Showing
-from tests.web.pages import ArPage, open_page
+from tests.web.pages import PATIENCE_S, ArPage, open_page
 from tests.web.walk import NAME, WEB, make_site, write_log
 from tracker.log import Log
 
@@ -138,9 +139,12 @@ def test_a_whole_new_build_takes_the_place_of_the_old_one_when_no_page_of_it_is_
     (bundle / "worker.js").write_text(worker, encoding="utf-8")
     visit.ask("navigator.serviceWorker.getRegistration().then((kept) => kept.update()).then(() => null)")
     visit.until("navigator.serviceWorker.getRegistration().then(({ waiting }) => waiting !== null)")
-    visit.page.goto("about:blank")
-    visit.page.goto(f"{showing.url}icon.svg")
-    visit.until("caches.keys().then((names) => names.sort().join() === 'agora-build-next,agora-site')")
+    deadline = monotonic() + PATIENCE_S
+    while visit.ask("caches.keys().then((names) => names.sort().join())") != "agora-build-next,agora-site":
+        assert monotonic() < deadline, "the next build never took the place of the old one"
+        visit.page.goto("about:blank")  # no page of the old one is open, as soon as the browser has put the last away
+        visit.page.wait_for_timeout(200)
+        visit.page.goto(f"{showing.url}icon.svg")
     visit.page.context.set_offline(True)
     visit.page.goto(showing.url)
     assert "next build" in visit.page.content()
