@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 from rich.console import Console
 
-from server.calibrating.feed import Feed, LiveFeed, Progress, recorded_feed
 from server.options import Browser, Port
 from server.progress import progress_bar
 from tracker.calibrate.board import DICTIONARIES, Board
 from tracker.errors import InputError
 from tracker.rig_file import DEFAULT_PLACE, RigFile, read_rig_file
 
-if TYPE_CHECKING:  # figures need matplotlib, which takes a second, and every command of agora would wait for it
+if TYPE_CHECKING:  # figures need matplotlib, feeds all readers of logs: every command of agora would wait for them
+    from server.calibrating.feed import Feed, Progress
     from server.calibrating.result import Result
 
 calibrate = typer.Typer(
@@ -219,7 +219,9 @@ def _feed(
     imu: str = "none",
     gps: str = "none",
     has_pictures: bool = False,
-) -> Feed:
+) -> "Feed":
+    from server.calibrating.feed import LiveFeed, recorded_feed
+
     if log is not None:
         return recorded_feed(log, camera=has_pictures)
     from server.rig_sources import RigSources
@@ -230,7 +232,7 @@ def _feed(
 
 
 @contextmanager
-def _told() -> Iterator[Progress]:
+def _told() -> Iterator["Progress"]:
     """Show a progress bar while inside."""
     with progress_bar("calibrating") as bar:
         task = bar.add_task("", total=1.0)

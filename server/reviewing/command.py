@@ -8,7 +8,7 @@ import typer
 from rich.console import Console
 
 from server.options import SITE, WEB, Anchor, EstimatorName, SiteFolder
-from server.reviewing.exported import DEFAULT_MB, LARGEST_MB, SMALLEST_MB
+from server.reviewing.page_size import DEFAULT_MB, LARGEST_MB, SMALLEST_MB
 
 
 def export(

@@ -13,9 +13,6 @@ from typing import Any, Final
 from server.errors import LogRefused
 from server.reviewing.pack import unpacked
 
-DEFAULT_MB: Final = 40
-SMALLEST_MB: Final = 8
-LARGEST_MB: Final = 400
 #: What stands in the file beside pictures, model and scripts: the walk's curves and events.
 _BESIDE_BYTES: Final = 2 * 10**6
 _BODY = re.compile(r"<body[^>]*>.*</body>", re.DOTALL)

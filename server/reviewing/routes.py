@@ -11,9 +11,10 @@ from fastapi import APIRouter, Depends, HTTPException, Query, Response
 from server.access import Access, needs
 from server.errors import LogRefused, UnknownSession
 from server.grants import Grant
-from server.reviewing.exported import DEFAULT_MB, LARGEST_MB, SMALLEST_MB, Exporter
+from server.reviewing.exported import Exporter
 from server.reviewing.jobs import MEDIA_TYPES, CourseJob, Job, PackJob, ThumbnailsJob, TimelineJob
 from server.reviewing.pack import unpacked
+from server.reviewing.page_size import DEFAULT_MB, LARGEST_MB, SMALLEST_MB
 from server.reviewing.reviews import Reviews
 from server.session import Session
 from server.sessions import Sessions

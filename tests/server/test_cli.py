@@ -145,6 +145,13 @@ def test_a_folder_that_cannot_be_written_is_one_sentence(walk: Path, tmp_path: P
         is_one_sentence(result.stderr, "file", "written")
 
 
+def test_no_command_waits_for_what_only_others_need() -> None:
+    heavy = ("av", "fastapi", "matplotlib", "rosbags", "scipy", "trimesh", "viser")
+    asked = f"import sys, server.cli; print([name for name in {heavy} if name in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, timeout=60, check=True)
+    assert done.stdout.strip() == "[]"
+
+
 # -- what it is for ---------------------------------------------------------------------------------------------------
 
 
