@@ -34,6 +34,8 @@ NODE := $(shell node -e '$(NODE_FITS)' 2>/dev/null && command -v npm >/dev/null 
 ifneq ($(filter .tools/%,$(NODE)),)
 export PATH := $(CURDIR)/$(dir $(NODE)):$(PATH)
 endif
+# Where nothing compiled is kept, each of the many `agora` that the tests start would compile all its libraries anew.
+unexport PYTHONDONTWRITEBYTECODE
 # Playwright brings a Node.js that needs a library which a bare Debian lacks (libatomic1): it gets ours.
 export PLAYWRIGHT_NODEJS_PATH := $(abspath $(NODE))
 
