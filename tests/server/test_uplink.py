@@ -27,6 +27,8 @@ from tracker.measurements import ImuSample
 from tracker.simulate import AGORA_ORIGIN
 from tracker.sources.played import Played
 
+S = 1_000_000_000
+
 _SERVE = """
 import sys
 from pathlib import Path
@@ -76,14 +78,12 @@ def test_the_rig_tracks_on_while_its_server_is_killed_and_sends_the_newest_first
     with server_process(tmp_path) as (_, port):
         rig.start(f"ws://127.0.0.1:{port}/ws/rig/walk", token("rig", "walk"))
         until(lambda: rig.link is not None and rig.link.connected and rig.state.pose is not None)
-    before = rig.state.sensors["imu"].count
-    sleep(2.5)
-    state = rig.state
+    until(lambda: rig.link is not None and not rig.link.connected)
+    t_away_ns, before = monotonic_ns(), rig.state.sensors["imu"].count
+    until(lambda: rig.state.sensors["imu"].count > before + 400)  # the sensors are heard while the server is away
+    until(lambda: (pose := rig.state.pose) is not None and pose.t_ns > max(t_away_ns + S, monotonic_ns() - S // 2))
     assert rig.link is not None
     assert not rig.link.connected
-    assert state.sensors["imu"].count > before + 400, "the sensors are heard while the server is away"
-    assert state.pose is not None
-    assert monotonic_ns() - state.pose.t_ns < 500_000_000
     t_back_ns = monotonic_ns()
     with server_process(tmp_path, port):
         until(
@@ -96,7 +96,7 @@ def test_the_rig_tracks_on_while_its_server_is_killed_and_sends_the_newest_first
         session = hello["session"]
         assert (session["kind"], session["estimator"]) == ("live", "camera-gps-imu/precise")
         assert metas
-        assert metas[0].t_capture_ns > t_back_ns - 1_000_000_000, "nothing old was kept for it"
+        assert metas[0].t_capture_ns > t_back_ns - S, "nothing old was kept for it"
         assert all(meta.pose_valid for meta in metas)
         rig.close()
 
