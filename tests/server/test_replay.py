@@ -180,6 +180,29 @@ def test_an_operator_sees_the_filter_at_work(wall: Path, tmp_path: Path) -> None
         assert update["position_m"] < 30.0
 
 
+def test_nothing_is_left_behind(wall: Path, tmp_path: Path) -> None:
+    before = set(threading.enumerate())
+    with watching(wall, ReplaySettings(), tmp_path) as watcher:
+        list(watcher.frames(3))
+    until(lambda: set(threading.enumerate()) <= before)
+
+
+def test_an_estimator_that_cannot_run_is_refused_before_anything_starts(dark: Path) -> None:
+    before = threading.active_count()
+    with pytest.raises(MissingSensor, match="no camera"):
+        replay_of(dark, ReplaySettings(estimator="camera-gps-imu/famm"))
+    with pytest.raises(UnknownEstimator):
+        replay_of(dark, ReplaySettings(estimator="nonsense"))
+    assert threading.active_count() == before
+
+
+@pytest.fixture(scope="module")
+def watched_dark(dark: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Watcher]:
+    """The six seconds without pictures, again and again."""
+    with watching(dark, ReplaySettings(looping=True), tmp_path_factory.mktemp("dark")) as watcher:
+        yield watcher
+
+
 @pytest.mark.parametrize(
     ("action", "value", "word"),
     [
@@ -196,24 +219,22 @@ def test_an_operator_sees_the_filter_at_work(wall: Path, tmp_path: Path) -> None
     ],
 )
 def test_a_request_that_makes_no_sense_gets_a_sentence_and_changes_nothing(
-    dark: Path, tmp_path: Path, action: str, value: object, word: str
+    watched_dark: Watcher, action: str, value: object, word: str
 ) -> None:
-    with watching(dark, ReplaySettings(looping=True), tmp_path) as watcher:
-        watcher.frame_where(lambda meta: meta.pose_valid)
-        reply = watcher.ask(action, value)
-        assert not reply["ok"]
-        assert word in reply["error"]
-        after = watcher.frame_where(lambda meta: meta.pose_valid)
-        assert after.estimator == "gps-imu/precise"
-        assert watcher.session["playback"]["speed"] == 1.0
+    watched_dark.frame_where(lambda meta: meta.pose_valid)
+    reply = watched_dark.ask(action, value)
+    assert not reply["ok"]
+    assert word in reply["error"]
+    after = watched_dark.frame_where(lambda meta: meta.pose_valid)
+    assert after.estimator == "gps-imu/precise"
+    assert watched_dark.session["playback"]["speed"] == 1.0
 
 
-def test_a_walk_without_camera_is_shown_over_empty_pictures(dark: Path, tmp_path: Path) -> None:
-    with watching(dark, ReplaySettings(looping=True), tmp_path) as watcher:
-        meta = watcher.frame_where(lambda meta: meta.pose_valid)
-        assert (meta.camera.width_px, meta.camera.height_px) == (640, 480)
-        assert "no camera" in watcher.session["notice"]
-        assert set(watcher.session["unavailable"]) == {name for name in ESTIMATORS if name.startswith("camera")}
+def test_a_walk_without_camera_is_shown_over_empty_pictures(watched_dark: Watcher) -> None:
+    meta = watched_dark.frame_where(lambda meta: meta.pose_valid)
+    assert (meta.camera.width_px, meta.camera.height_px) == (640, 480)
+    assert "no camera" in watched_dark.session["notice"]
+    assert set(watched_dark.session["unavailable"]) == {name for name in ESTIMATORS if name.startswith("camera")}
 
 
 def test_the_log_itself_can_be_had(dark: Path, tmp_path: Path) -> None:
@@ -222,22 +243,6 @@ def test_the_log_itself_can_be_had(dark: Path, tmp_path: Path) -> None:
         assert httpx.get(f"{shown.url}api/logs").json() == {"logs": [{"name": "dark", "bytes": dark.stat().st_size}]}
         assert httpx.get(f"{shown.url}api/logs/dark").content == dark.read_bytes()
         assert httpx.get(f"{shown.url}api/logs/..%2Fwall").status_code == 404
-
-
-def test_nothing_is_left_behind(wall: Path, tmp_path: Path) -> None:
-    before = set(threading.enumerate())
-    with watching(wall, ReplaySettings(), tmp_path) as watcher:
-        list(watcher.frames(3))
-    until(lambda: set(threading.enumerate()) <= before)
-
-
-def test_an_estimator_that_cannot_run_is_refused_before_anything_starts(dark: Path) -> None:
-    before = threading.active_count()
-    with pytest.raises(MissingSensor, match="no camera"):
-        replay_of(dark, ReplaySettings(estimator="camera-gps-imu/famm"))
-    with pytest.raises(UnknownEstimator):
-        replay_of(dark, ReplaySettings(estimator="nonsense"))
-    assert threading.active_count() == before
 
 
 def test_a_walk_from_elsewhere_says_how_to_see_it(tmp_path: Path) -> None:
