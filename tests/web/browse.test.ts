@@ -6,7 +6,7 @@ import { found, overlooking, plainText } from "../../web/src/browse/finding";
 import { flightOf } from "../../web/src/browse/flight";
 import { isStill, ofGamepad, ofKeys, ofStick, STILL, together } from "../../web/src/browse/intent";
 import { after, begun, moved, stayOf, toggled } from "../../web/src/browse/journey";
-import { BEST, Pace, STEPS } from "../../web/src/browse/pace";
+import { BEST, breakAfter, Pace, STEPS } from "../../web/src/browse/pace";
 import { lengthsOf } from "../../web/src/browse/span";
 import { isRigid, transform } from "../../web/src/frames";
 import type { Place } from "../../web/src/plan";
@@ -259,6 +259,16 @@ test("a motion that is too slow is drawn more cheaply, and better again when the
 
 test("without a graphics card one begins with the cheapest", () => {
   expect(new Pace(true).step).toBe(STEPS.at(-1));
+});
+
+test("other pages have at least as long as a picture of who moves took, longer while much comes in, and never a third of a second", () => {
+  for (const took_ms of [0, 16, 60, 400, 5000]) {
+    const [whole_ms, loading_ms] = [breakAfter(took_ms, true), breakAfter(took_ms, false)];
+    expect(whole_ms).toBeGreaterThanOrEqual(Math.min(took_ms, 250));
+    expect(loading_ms).toBeGreaterThanOrEqual(whole_ms);
+    expect(loading_ms).toBeLessThan(333);
+  }
+  expect(breakAfter(16, false)).toBeGreaterThan(breakAfter(16, true));
 });
 
 test("a span is told along the ground and upwards", () => {

@@ -140,6 +140,15 @@ def test_the_page_is_at_its_finest_beside_who_stands(browser: Browser, tmp_path:
         assert after["framesDrawn"] < before["framesDrawn"] + 10
 
 
+def test_the_page_is_at_its_finest_beside_who_walks(page: ArPage) -> None:
+    """What stands still is kept, and only who moves is drawn anew."""
+    page.until("agora.stats().fineness === 1 && agora.stats().whole")
+    before = page.stats()["posesDrawn"]
+    page.until(f"agora.stats().posesDrawn > {before + 30}")
+    stats = page.stats()
+    assert (stats["fineness"], stats["whole"]) == (1.0, True)
+
+
 _AWAY_M = """(() => {
     const T = agora.pose().T_site_cam;
     const [e, n, u] = agora.walkers()[0].place_site_m;

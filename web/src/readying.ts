@@ -17,8 +17,9 @@ import {
   WebGLRenderTarget,
 } from "three";
 
-/** Timers are not faster. */
-const LOOKED_EVERY_MS = 4;
+/** So long after the last look comes the next one: timers are not faster, and what takes long is looked for less often. */
+const FIRST_LOOK_MS = 4;
+const LAST_LOOK_MS = 24;
 const LONGEST_MS = 2000;
 /** So long the page's thread asks without a pause. */
 const SLICE_MS = 30;
@@ -56,7 +57,7 @@ export class Readying {
       this.known.add(program);
       program.getUniforms();
       if (performance.now() - began_ms < SLICE_MS) continue;
-      await pause();
+      await pause(FIRST_LOOK_MS);
       began_ms = performance.now();
     }
   }
@@ -84,9 +85,11 @@ export class Readying {
   private async until(holds: () => boolean): Promise<void> {
     const gl = this.renderer.getContext();
     const began_ms = performance.now();
+    let next_ms = FIRST_LOOK_MS;
     do {
       gl.flush(); // Chromium looks what is done only when it is given something, if another page draws meanwhile
-      await pause();
+      await pause(next_ms);
+      next_ms = Math.min(LAST_LOOK_MS, 1.5 * next_ms);
     } while (!holds() && performance.now() - began_ms < LONGEST_MS);
   }
 
@@ -120,6 +123,6 @@ export class Readying {
   }
 }
 
-function pause(): Promise<void> {
-  return new Promise((resolve) => setTimeout(resolve, LOOKED_EVERY_MS));
+function pause(wait_ms: number): Promise<void> {
+  return new Promise((resolve) => setTimeout(resolve, wait_ms));
 }

@@ -144,11 +144,7 @@ function bodyOf(eyeHeight_m: number, cloth: MeshLambertMaterial): Group {
   const draped = new LatheGeometry(profile, 28).rotateX(Math.PI / 2).scale(1, 0.72, 1);
   const head = new SphereGeometry(HEAD_M, 24, 18).scale(0.86, 1, 1.18).translate(0, 0, eyeHeight_m);
   const group = new Group();
-  for (const shape of [draped, head]) {
-    const part = new Mesh(shape, cloth);
-    part.castShadow = true;
-    group.add(part);
-  }
+  for (const shape of [draped, head]) group.add(new Mesh(shape, cloth));
   return group;
 }
 

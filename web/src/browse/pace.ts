@@ -27,6 +27,15 @@ const LOOKED_AT = 6;
 const PATIENCE_MS = 8000;
 const MOST_PATIENCE_MS = 512_000;
 
+/** Without a graphics card so much of the time is left to others after a picture of who moves: in shares of what it took to come. */
+const LEFT = { whole: 1, loading: 3 } as const;
+const MOST_LEFT_MS = 250;
+
+/** Return how long to draw nothing after a picture that took so long to come: other pages draw and load, too. */
+export function breakAfter(took_ms: number, isWhole: boolean): number {
+  return Math.min(MOST_LEFT_MS, took_ms * (isWhole ? LEFT.whole : LEFT.loading));
+}
+
 export class Pace {
   private index: number;
   private times_ms: number[] = [];

@@ -1,8 +1,8 @@
 /** The square as it is drawn on the start page, when something asks for it. three.js only. */
 
-import { ACESFilmicToneMapping, Fog, Group, PerspectiveCamera, type Texture, WebGLRenderer } from "three";
+import { ACESFilmicToneMapping, Fog, type Group, PerspectiveCamera, type Texture, WebGLRenderer } from "three";
 import type { Standpoint } from "../describe";
-import { T_gltf_site, type Vector3 } from "../frames";
+import type { Vector3 } from "../frames";
 import type { Square } from "../model";
 import { COARSEST } from "../quality";
 import { Readying } from "../readying";
@@ -13,9 +13,9 @@ import type { Thing } from "../thing";
 import { Controls } from "./controls";
 import { Explorer } from "./explorer";
 import type { Eye } from "./eye";
-import { BEST, Pace, type Step } from "./pace";
+import { BEST, breakAfter, Pace, type Step } from "./pace";
+import { type Layer, Painting } from "./painting";
 import { Rays } from "./rays";
-import { Veil } from "./veil";
 import type { Leader, Turn, World } from "./world";
 
 /** `assets/levels.py` tells costs for this field of view. */
@@ -26,29 +26,15 @@ const FOG_M = [220, 900] as const;
 const FINEST = 2;
 /** So long after the last motion the finest picture is drawn. */
 const REST_MS = 180;
-/** Without a graphics card what comes in is drawn this often: each picture keeps the next piece waiting. */
-const COMES_EVERY_MS = 1000;
-
-interface Layer {
-  readonly square: Square;
-  readonly sky: Sky;
-  /** Whether its shadows are to be drawn anew, and whether they ever were. */
-  stale: boolean;
-  thrown: boolean;
-  plain: boolean;
-  /** Whether its finest surfaces can be drawn at once. */
-  finest: "no" | "soon" | "yes";
-}
 
 export class Stage implements World {
   readonly renderer: WebGLRenderer;
   readonly camera = new PerspectiveCamera(FIELD_DEG, 1, 0.15, 1500);
-  readonly guests = new Group();
   readonly explorer: Explorer;
   private readonly rays: Rays;
   private readonly layers = new Map<Square, Layer>();
   private readonly turns = new Set<Turn>();
-  private readonly veil = new Veil();
+  private readonly painting: Painting;
   private readonly readying: Readying;
   private readonly pace: Pace;
   private readonly inSoftware: boolean;
@@ -60,15 +46,17 @@ export class Stage implements World {
   private asked = false;
   private wanted = false;
   private guestsMove = false;
-  private isHurried = false;
+  /** Whether the last picture was another view than the one before. */
+  private moves = false;
+  /** When who moves was drawn alone, until the next picture's turn; and when they are to be drawn again. */
+  private guestsDrawn_ms: number | null = null;
+  private guestsDue_ms = Number.NEGATIVE_INFINITY;
   private fineness = 1;
   private isDressing = false;
   private compiling = 0;
   private resting: number | null = null;
   private moved_ms = Number.NEGATIVE_INFINITY;
-  private came_ms = Number.NEGATIVE_INFINITY;
   private drawn_ms: number | null = null;
-  private cost = { calls: 0, triangles: 0 };
   private pictures = 0;
   private readonly waiting: (() => void)[] = [];
   /** Called when a square has changed: a finer ground may be a little higher. */
@@ -89,11 +77,10 @@ export class Stage implements World {
     this.inSoftware = drawsInSoftware(this.renderer);
     this.pace = new Pace(this.inSoftware);
     this.readying = new Readying(this.renderer);
+    this.painting = new Painting(this.renderer, this.camera);
     this.rays = new Rays(this.camera, canvas);
     // blurring what is behind the panels costs as much as drawing the model
     document.body.classList.toggle("frugal", this.inSoftware);
-    this.guests.matrixAutoUpdate = false;
-    this.guests.matrix.set(...(T_gltf_site as Parameters<typeof this.guests.matrix.set>));
     this.explorer = new Explorer(this.camera, canvas, new Controls(canvas, stick), eyeHeight_m, () => this.ask());
     new ResizeObserver(() => this.fill()).observe(canvas);
     this.fill();
@@ -101,15 +88,17 @@ export class Stage implements World {
 
   /** What the last drawing cost, shadows left out, and what the renderer holds. */
   get stats(): Readonly<Record<string, number>> {
-    const { cost, pictures, fineness } = this;
+    const { pictures, fineness } = this;
+    const { cost } = this.painting;
     const { geometries, textures } = this.renderer.info.memory;
     return { drawCalls: cost.calls, triangles: cost.triangles, framesDrawn: pictures, fineness, geometries, textures };
   }
 
-  /** Whether all that was asked for is drawn, as finely as it can be; what moves by itself never is. */
+  /** Whether all that was asked for is drawn, as finely as it can be; who is led by what moves has no more to wait for. */
   get isSettled(): boolean {
     return (
-      (this.guestsMove || (!this.wanted && this.resting === null && this.compiling === 0)) && !this.explorer.isFlying
+      ((this.guestsMove && this.moves) || (!this.wanted && this.resting === null && this.compiling === 0)) &&
+      !this.explorer.isFlying
     );
   }
 
@@ -139,15 +128,18 @@ export class Stage implements World {
     this.above = above && share > 0 ? this.layer(above) : null;
     this.fades ||= share !== this.share;
     this.share = share;
-    const most = this.above && share > 0.5 ? this.above : this.below;
-    if (this.guests.parent !== most.square.scene) most.square.scene.add(this.guests);
-    this.ask();
+    this.renew();
+  }
+
+  get guests(): Group {
+    return this.painting.guests.group;
   }
 
   /** Light a square by a sun at this place of the sky. */
   shine(square: Square, sun: Sun): void {
     const { sky } = this.layer(square);
     sky.shine(sun);
+    this.painting.guests.light.shine(sun);
     square.shine(sun);
   }
 
@@ -178,9 +170,29 @@ export class Stage implements World {
     this.look();
   }
 
+  /** Ask for a picture of what has changed itself, not only what moves in it. */
+  private renew(): void {
+    this.painting.forget();
+    this.ask();
+  }
+
   look(): void {
-    if (!this.asked) requestAnimationFrame((now_ms) => this.draw(now_ms));
+    if (this.asked) return;
+    requestAnimationFrame((now_ms) => this.turn(now_ms));
     this.asked = true;
+  }
+
+  /** Draw, unless it is the others' turn and nothing was asked for. */
+  private turn(now_ms: number): void {
+    this.asked = false;
+    if (this.guestsDrawn_ms !== null) {
+      // this picture's own turn came when the last one was on its way to the screen
+      const took_ms = now_ms - this.guestsDrawn_ms;
+      this.guestsDue_ms = now_ms + breakAfter(took_ms, this.isReady());
+      this.guestsDrawn_ms = null;
+    }
+    if (this.wanted || now_ms >= this.guestsDue_ms) this.draw(now_ms);
+    else this.look();
   }
 
   reach(from: Vector3, to: Vector3): number {
@@ -215,7 +227,7 @@ export class Stage implements World {
 
   /** Draw, and resolve when that is done. */
   private next(): Promise<void> {
-    this.ask();
+    this.renew();
     return new Promise((resolve) => this.waiting.push(resolve));
   }
 
@@ -238,13 +250,7 @@ export class Stage implements World {
     }
     this.moved_ms = performance.now();
     if (!layer.plain) await this.compile(layer);
-    if (!this.inSoftware) return this.next();
-    const now_ms = performance.now();
-    if (now_ms - this.came_ms > COMES_EVERY_MS) {
-      this.came_ms = now_ms;
-      this.ask();
-    }
-    await this.readying.drained();
+    await (this.inSoftware ? this.readying.drained() : this.next());
   }
 
   private get front(): Square | null {
@@ -265,7 +271,7 @@ export class Stage implements World {
       if (this.isDressing) return;
       layer.stale = true;
       this.refined();
-      this.ask();
+      this.renew();
     };
     return layer;
   }
@@ -276,7 +282,7 @@ export class Stage implements World {
     camera.fov = fieldOf(camera.aspect);
     camera.updateProjectionMatrix();
     this.resize();
-    this.ask();
+    this.renew();
   }
 
   private resize(): void {
@@ -296,34 +302,38 @@ export class Stage implements World {
 
   private draw(now_ms: number): void {
     const isWanted = this.wanted;
-    this.asked = this.wanted = false;
+    this.wanted = false;
     const before = this.camera.matrixWorld.clone();
     const goesOn = this.explorer.turn(now_ms);
     this.guestsMove = false;
     for (const turn of this.turns) this.guestsMove = turn(now_ms) || this.guestsMove;
     if (!this.below) return;
     this.camera.updateMatrixWorld();
-    const isMoving = !this.camera.matrixWorld.equals(before) || this.fades || this.guestsMove;
+    this.moves = !this.camera.matrixWorld.equals(before) || this.fades;
     this.fades = false;
-    if (isMoving) {
+    if (this.moves) {
       if (this.drawn_ms !== null) this.pace.drawn(now_ms - this.drawn_ms, now_ms);
       this.moved_ms = now_ms;
+      this.painting.forget();
     }
-    this.drawn_ms = isMoving ? now_ms : null;
-    if (!isWanted && !isMoving && !goesOn) return;
+    this.drawn_ms = this.moves ? now_ms : null;
+    if (!isWanted && !this.moves && !this.guestsMove && !goesOn) return;
     const isReady = this.isReady();
     const rests = this.pace.step === BEST || (isReady && now_ms - this.moved_ms >= REST_MS && this.isFinest());
     this.take(rests ? BEST : this.pace.step);
     this.render();
     if (!rests && isReady && this.compiling === 0) this.restLater();
-    if (goesOn || this.guestsMove) this.ask();
+    if (goesOn) this.ask();
+    else if (this.guestsMove) this.look();
+    this.guestsDrawn_ms = this.inSoftware && this.guestsMove && !this.moves ? now_ms : null;
   }
 
   /** Draw by that step from now on. */
   private take(step: Step): void {
+    if (step.fineness !== this.fineness || step.plain !== this.painting.isHurried) this.painting.forget();
     this.fit(step.fineness);
     this.fineness = step.fineness;
-    this.isHurried = step.plain;
+    this.painting.isHurried = step.plain;
     for (const layer of this.layers.values()) {
       if (layer.plain === step.plain) continue;
       this.dress(layer, step.plain);
@@ -375,35 +385,13 @@ export class Stage implements World {
   }
 
   private render(): void {
-    const { renderer, below, above } = this;
+    const { below, above, share, painting } = this;
     if (!below) return;
-    renderer.info.reset();
-    const cost = { calls: 0, triangles: 0 };
-    this.paint(below, cost);
-    if (above && this.share < 1) this.veil.take(renderer);
-    if (above) this.paint(above, cost);
-    if (above && this.share < 1) this.veil.draw(renderer, 1 - this.share, this.fineness);
-    this.cost = cost;
+    if (!above) painting.drawOne(below, this.guestsMove && !this.moves);
+    else if (share > 0.5) painting.drawBoth(above, below, 1 - share, this.fineness);
+    else painting.drawBoth(below, above, share, this.fineness);
     this.pictures += 1;
     for (const drawn of this.waiting.splice(0)) drawn();
-  }
-
-  private paint(layer: Layer, cost: { calls: number; triangles: number }): void {
-    const { renderer, camera } = this;
-    if (layer.square.update(camera.position)) layer.stale = true;
-    // shadows cost as much as all else: where there is no time for them the old ones stay until there is
-    const throwsAnew = layer.stale && !(this.isHurried && layer.thrown);
-    renderer.shadowMap.needsUpdate = throwsAnew;
-    if (throwsAnew) {
-      this.ask(); // the next drawing is counted without the shadows'
-      layer.stale = false;
-      layer.thrown = true;
-    }
-    const before = { ...renderer.info.render };
-    renderer.clear();
-    renderer.render(layer.square.scene, camera);
-    cost.calls += renderer.info.render.calls - before.calls;
-    cost.triangles += renderer.info.render.triangles - before.triangles;
   }
 }
 
