@@ -86,11 +86,18 @@ export class Square {
     this.materials = typeof extras["materials"] === "string" && levels.length > 1 ? extras["materials"] : null;
   }
 
-  /** Load a model's coarsest level. */
-  static async load(levels: readonly string[], groundShare: number): Promise<Square> {
+  /** Load a model's coarsest level; `come` is told how much of it has come, 0 to 1. */
+  static async load(
+    levels: readonly string[],
+    groundShare: number,
+    come: (share: number) => void = () => undefined,
+  ): Promise<Square> {
     const first = levels.at(-1);
     if (first === undefined) throw new Error("a model without files");
-    const [loaded, surfaces] = [await loader.loadAsync(first), new Surfaces(groundShare)];
+    const onProgress = ({ loaded, total }: ProgressEvent): void => {
+      if (total > 0) come(loaded / total); // a server that packs it does not tell how much there is
+    };
+    const [loaded, surfaces] = [await loader.loadAsync(first, onProgress), new Surfaces(groundShare)];
     return new Square(levels, loaded, await batched(loaded, surfaces, async () => undefined), surfaces, groundShare);
   }
 

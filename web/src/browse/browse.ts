@@ -31,6 +31,9 @@ import type { Way } from "./way";
 const FROM: Vector3 = [78, -112, 66];
 const TO: Vector3 = [-25, 0, 2];
 const TOAST_MS = 6000;
+/** Of the way to the first picture; what is left when both have come is to make it ready. */
+const SCRIPT_SHARE = 0.2;
+const MODEL_SHARE = 0.6;
 
 export class Browse {
   readonly stage: Stage;
@@ -85,6 +88,10 @@ export class Browse {
     });
     explorer.changed = () => this.showWay();
     this.epochs.changed = () => this.showEpoch();
+    this.epochs.come = (share) => {
+      element("arrival-bar", HTMLProgressElement).value = SCRIPT_SHARE + share * MODEL_SHARE;
+    };
+    this.epochs.come(0);
     this.stage.refined = () => this.standAgain();
     this.stage.eachPicture(() => {
       this.places.show(this.stage.eye);
@@ -108,6 +115,7 @@ export class Browse {
     await this.epochs.set(shown.past ?? (firstOf(this.site, shown) === "today" ? 0 : 1));
     this.look(shown);
     await this.stage.drawn();
+    document.body.classList.remove("empty");
     void this.learnGround();
   }
 

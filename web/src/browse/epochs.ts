@@ -18,6 +18,8 @@ export class Epochs {
   share: number;
   /** Called when what is shown has changed. */
   changed: () => void = () => undefined;
+  /** Called with how much of a model has come, 0 to 1. */
+  come: (share: number) => void = () => undefined;
   private readonly squares = new Map<Epoch, Square>();
   private readonly loading = new Map<Epoch, Promise<Square>>();
   private readonly variants = new Map<string, string>();
@@ -117,7 +119,7 @@ export class Epochs {
   private async fetch(epoch: Epoch): Promise<Square> {
     const levels = this.site.models[epoch];
     if (!levels) throw new Error(`no model named ${epoch}`);
-    const square = await Square.load(levels, 1);
+    const square = await Square.load(levels, 1, (share) => this.come(share));
     for (const { id, defaultVariant } of this.site.monuments) {
       const variant = this.variants.get(id) ?? defaultVariant;
       if (variant !== null) square.showVariant(id, variant);

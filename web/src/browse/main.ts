@@ -7,7 +7,7 @@ import type { Matrix4, Vector3 } from "../frames";
 import { languages, say } from "../language/speech";
 import { parseSite, type Site } from "../site";
 import { readAddress } from "./address";
-import { Browse } from "./browse";
+import type { Browse } from "./browse";
 import { Directory } from "./directory";
 import { showWalks } from "./walks";
 
@@ -29,9 +29,10 @@ async function showPlan(): Promise<void> {
 
 async function show(): Promise<void> {
   try {
-    const site = await loadSite();
+    // what draws is large: by itself, so that the page speaks the visitor's language before it has come
+    const [site, drawing] = await Promise.all([loadSite(), import("./browse")]);
     const shown = readAddress(location.search, location.hash);
-    browse = new Browse(site, shown, directory);
+    browse = new drawing.Browse(site, shown, directory);
     await browse.start(shown);
   } catch (error) {
     tell(element("notice", HTMLElement), say("trouble.model"));
