@@ -47,13 +47,17 @@ def build(site: Site, folder: Path, progress: Callable[[float], None]) -> BuildR
     Raises:
         SiteError: The facts do not suffice.
         PackerMissing: There is no Node.js to pack with.
-        AssetError: The folder cannot be written.
+        AssetError: The folder cannot be made or written.
     """
     key = inputs_hash(site.folder, folder)
     known = remembered(folder, key)
     if known is not None:
         progress(1.0)
         return known
+    try:
+        folder.mkdir(parents=True, exist_ok=True)  # before the half minute that the models take
+    except OSError as exc:
+        raise AssetError(f"{folder} cannot be made ({exc.strerror}): name another folder.") from exc
     with tempfile.TemporaryDirectory(prefix="agora-build-") as raw:
         made = _Made(site, Path(raw))
         jobs = [(model, level) for model in MODELS for level in LEVELS]
@@ -149,7 +153,6 @@ def _write(path: Path, data: bytes) -> None:
     """Write beside the file and rename, so that no reader ever sees half of it."""
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
         part.write_bytes(data)
         part.replace(path)
     except OSError as exc:

@@ -101,8 +101,15 @@ def test_what_has_changed_is_built_again(
 
 def test_a_folder_that_cannot_be_made_is_named(built: tuple[Site, BuildReport, list[float]], tmp_path: Path) -> None:
     (tmp_path / "file").write_text("", encoding="utf-8")
-    with pytest.raises(AssetError, match=r"roman\.0\.glb cannot be written"):
+    with pytest.raises(AssetError, match=r"file cannot be made .*: name another folder"):
         build(built[0], tmp_path / "file", lambda share: None)
+
+
+def test_a_file_that_cannot_be_written_is_named_and_leaves_no_half(tmp_path: Path) -> None:
+    (tmp_path / "roman.0.glb" / "inside").mkdir(parents=True)
+    with pytest.raises(AssetError, match=r"roman\.0\.glb cannot be written"):
+        build_module._write(tmp_path / "roman.0.glb", b"new")
+    assert [path.name for path in tmp_path.iterdir()] == ["roman.0.glb"]
 
 
 def test_a_model_that_fails_leaves_the_old_file(built: tuple[Site, BuildReport, list[float]], tmp_path: Path) -> None:
