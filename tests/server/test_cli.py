@@ -16,6 +16,7 @@ import httpx
 import pytest
 
 from server.cli import SITE
+from tests.server.command import agora_here
 from tests.server.serving import until
 from tests.walks import write_walk
 from tracker.estimators import ESTIMATORS
@@ -66,22 +67,26 @@ def test_a_log_that_is_none_is_one_sentence_and_exit_code_2(command: str, tmp_pa
     text.write_text("no log at all")
     with LogWriter(empty, Rig()):
         pass
-    for path, word in ((missing, "missing.mcap"), (text, "MCAP"), (empty, "no IMU and no GPS")):
-        result = agora(command, path)
+    for run, path, word in (
+        (agora, missing, "missing.mcap"),
+        (agora_here, text, "MCAP"),
+        (agora_here, empty, "no IMU and no GPS"),
+    ):
+        result = run(command, path)
         assert (result.returncode, result.stdout) == (2, "")
         is_one_sentence(result.stderr, word, path.name)
 
 
 @pytest.mark.parametrize("command", ["replay", "evaluate"])
 def test_an_estimator_that_does_not_exist_is_named_beside_those_that_do(command: str, walk: Path) -> None:
-    result = agora(command, walk, "--estimator", "precice")
+    result = agora_here(command, walk, "--estimator", "precice")
     assert result.returncode == 2
     is_one_sentence(result.stderr, "precice", *ESTIMATORS)
 
 
 def test_an_estimator_that_the_walk_cannot_feed_says_what_is_missing(walk: Path) -> None:
     for command in ("replay", "evaluate"):
-        result = agora(command, walk, "--estimator", "camera-gps-imu/famm")
+        result = agora_here(command, walk, "--estimator", "camera-gps-imu/famm")
         assert result.returncode == 2
         is_one_sentence(result.stderr, "camera-gps-imu/famm", "no camera")
 
@@ -89,7 +94,7 @@ def test_an_estimator_that_the_walk_cannot_feed_says_what_is_missing(walk: Path)
 def test_a_port_in_use_is_one_sentence(walk: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = str(taken.getsockname()[1])
-        result = agora("replay", walk, "--no-browser", "--port", port)
+        result = agora_here("replay", walk, "--no-browser", "--port", port)
     assert result.returncode == 2
     is_one_sentence(result.stderr, port, "--port")
 
@@ -114,7 +119,7 @@ def test_a_broken_site_is_one_sentence(
     assert count == 1
     (broken / "site.toml").write_text(changed, encoding="utf-8")
     for arguments in (("build", broken), ("simulate", tmp_path / "out.mcap", "--site", broken)):
-        result = agora(*arguments)
+        result = agora_here(*arguments)
         assert result.returncode == 2
         is_one_sentence(result.stderr, *words)
     assert not (tmp_path / "out.mcap").exists()
@@ -122,13 +127,13 @@ def test_a_broken_site_is_one_sentence(
 
 def test_a_site_that_is_not_there_is_one_sentence(walk: Path, tmp_path: Path) -> None:
     for arguments in (("build", tmp_path / "none"), ("replay", walk, "--site", tmp_path / "none")):
-        result = agora(*arguments)
+        result = agora_here(*arguments)
         assert result.returncode == 2
         is_one_sentence(result.stderr, "site.toml")
 
 
 def test_models_that_are_not_built_are_asked_for(site: Path, walk: Path) -> None:
-    result = agora("replay", walk, "--no-browser", "--port", "0", "--site", site)
+    result = agora_here("replay", walk, "--no-browser", "--port", "0", "--site", site)
     assert result.returncode == 3
     is_one_sentence(result.stderr, "make setup")
 
@@ -140,7 +145,7 @@ def test_a_folder_that_cannot_be_written_is_one_sentence(walk: Path, tmp_path: P
         ("evaluate", walk, "--estimator", "truth", "--json", tmp_path / "file" / "out.json"),
         ("evaluate", walk, "--estimator", "truth", "--poses", tmp_path / "file"),
     ):
-        result = agora(*arguments)
+        result = agora_here(*arguments)
         assert result.returncode == 2
         is_one_sentence(result.stderr, "file", "written")
 

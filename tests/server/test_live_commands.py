@@ -14,6 +14,7 @@ from rich.console import Console
 
 from server.status_screen import as_json, screen
 from server.walking import recording_in, rig_url
+from tests.server.command import agora_here
 from tests.server.serving import serving, text_of, token, until, viewer
 from tests.walks import write_walk
 from tracker.errors import InputError
@@ -88,8 +89,11 @@ def test_record_records_without_tracking(sensors: list[str], tmp_path: Path) -> 
         (["track", "--to", "ftp://server", "--token", "t"], "wss://HOST"),
     ],
 )
-def test_what_cannot_be_is_one_sentence_and_exit_code_2(arguments: list[str], word: str, tmp_path: Path) -> None:
-    done = subprocess.run([AGORA, *arguments], capture_output=True, text=True, cwd=tmp_path, timeout=60)
+def test_what_cannot_be_is_one_sentence_and_exit_code_2(
+    arguments: list[str], word: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = agora_here(*arguments)
     assert done.returncode == 2, done.stderr
     assert word in done.stderr
     assert done.stderr.count("\n") == 1
