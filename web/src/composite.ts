@@ -16,7 +16,7 @@ import { reachOf } from "./picture";
 import type { Effort } from "./quality";
 import { Sheet } from "./sheet";
 import type { Doubted } from "./soften";
-import { drawsInSoftware } from "./software";
+import { anisotropyFor, drawsInSoftware } from "./software";
 
 /** From where the model is drawn. */
 export interface View {
@@ -84,6 +84,7 @@ export class Composite {
   /** Draw this square from now on. */
   show(square: Square): void {
     this.square = square;
+    square.anisotropy = anisotropyFor(this.renderer);
     square.changed = () => {
       this.renderer.shadowMap.needsUpdate = true;
       this.redraw();

@@ -168,6 +168,11 @@ export class Square {
     return this.occluders?.visible ?? false;
   }
 
+  /** How many looks at a texture its drawing has time for. */
+  set anisotropy(most: number) {
+    this.surfaces.anisotropy = most;
+  }
+
   /** Light it by a sun at this place of the sky. */
   shine(sun: Sun): void {
     this.light.shine(sun);

@@ -4,10 +4,11 @@ import { type Material, MeshStandardMaterial, NoBlending, type ShaderMaterial, t
 import type { GLTF } from "three/addons/loaders/GLTFLoader.js";
 import { type Common, plainOf, relook } from "./plain";
 
-const ANISOTROPY = 4;
 const PICTURES = ["map", "normalMap", "roughnessMap", "metalnessMap"] as const;
 
 export class Surfaces {
+  /** Of the full textures, as far as they have not come yet. */
+  anisotropy = 1;
   private readonly made = new Map<string, MeshStandardMaterial>();
   private readonly common: Common = { grey: { value: 0 }, shade: { value: 0.55 } };
   /** Full surfaces and their plain likenesses, both ways. */
@@ -66,7 +67,7 @@ export class Surfaces {
   }
 
   private retouch(material: MeshStandardMaterial, full: MeshStandardMaterial): void {
-    refine(material, full);
+    refine(material, full, this.anisotropy);
     const plain = this.plain.get(material);
     if (plain) relook(plain, material);
   }
@@ -115,12 +116,12 @@ const THINNED = /* glsl */ `
   #endif
   gl_FragColor = vec4(gl_FragColor.rgb * SHARE, SHARE + (1.0 - SHARE) * shade * (1.0 - seen));`;
 
-function refine(material: MeshStandardMaterial, full: MeshStandardMaterial): void {
+function refine(material: MeshStandardMaterial, full: MeshStandardMaterial, anisotropy: number): void {
   for (const picture of PICTURES) {
     if (material[picture] === full[picture]) continue;
     material[picture]?.dispose();
     material[picture] = full[picture];
-    if (full[picture]) full[picture].anisotropy = ANISOTROPY;
+    if (full[picture]) full[picture].anisotropy = anisotropy;
   }
   material.color.copy(full.color);
   material.roughness = full.roughness;

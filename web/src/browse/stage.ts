@@ -7,7 +7,7 @@ import type { Square } from "../model";
 import { COARSEST } from "../quality";
 import { Readying } from "../readying";
 import { Sky } from "../sky";
-import { drawsInSoftware } from "../software";
+import { anisotropyFor, drawsInSoftware } from "../software";
 import type { Sun } from "../sun";
 import type { Thing } from "../thing";
 import { Controls } from "./controls";
@@ -266,6 +266,7 @@ export class Stage implements World {
     square.scene.add(layer.sky.mesh);
     square.scene.fog = new Fog(0, ...FOG_M);
     (square.scene.fog as Fog).color = layer.sky.horizon;
+    square.anisotropy = anisotropyFor(this.renderer);
     square.pause = (pictures) => this.pause(layer, pictures);
     square.changed = () => {
       if (this.isDressing) return;
