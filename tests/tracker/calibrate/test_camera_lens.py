@@ -1,6 +1,8 @@
 """A lens is recovered from a simulated board video; too little and too much alike is refused."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -20,6 +22,13 @@ FISHEYE = CameraModel(640, 480, 330.0, 331.0, 318.0, 243.0, "equidistant", (0.02
 def looked_at(video: BoardVideo, poses: Sequence[tuple[Matrix, Matrix]]) -> list[BoardView]:
     views = [video.board.find(video.picture(R, p, i), i * 1_000_000_000) for i, (R, p) in enumerate(poses)]
     return [view for view in views if view is not None]
+
+
+@cache
+def shown_to_webcam() -> tuple[BoardVideo, tuple[BoardView, ...]]:
+    """Return a video of a board shown around fifty times, and its views; points are changed in copies alone."""
+    video = BoardVideo(WEBCAM)
+    return video, tuple(looked_at(video, list(shown_around(video, 50))))
 
 
 @pytest.mark.parametrize(("camera", "seed"), [(WEBCAM, 2), (FISHEYE, 1)], ids=["webcam", "fisheye"])
@@ -74,19 +83,15 @@ def test_a_board_that_is_held_still_is_refused() -> None:
 
 def test_corners_that_are_off_by_pixels_are_refused() -> None:
     """A bent board, or one of another kind."""
-    video, rng = BoardVideo(WEBCAM), np.random.default_rng(4)
-    views = looked_at(video, list(shown_around(video, 40)))
-    bent = [
-        BoardView(view.t_ns, view.size_px, view.numbers, view.points_px + rng.normal(0.0, 2.0, view.points_px.shape))
-        for view in views
-    ]
+    (video, views), rng = shown_to_webcam(), np.random.default_rng(4)
+    bent = [replace(view, points_px=view.points_px + rng.normal(0.0, 2.0, view.points_px.shape)) for view in views]
     with pytest.raises(InputError, match="glue the board to something flat"):
         fit_lens(bent, video.board)
 
 
 def test_a_mistaken_corner_now_and_then_does_no_harm() -> None:
-    video, rng = BoardVideo(WEBCAM), np.random.default_rng(5)
-    views = looked_at(video, list(shown_around(video, 50)))
+    (video, seen), rng = shown_to_webcam(), np.random.default_rng(5)
+    views = [replace(view, points_px=view.points_px.copy()) for view in seen]
     for view in views:
         view.points_px[rng.integers(len(view.points_px))] += rng.uniform(-25.0, 25.0, 2)
     fit: LensFit = fit_lens(views, video.board)
@@ -94,8 +99,7 @@ def test_a_mistaken_corner_now_and_then_does_no_harm() -> None:
 
 
 def test_the_same_views_give_the_same_lens() -> None:
-    video = BoardVideo(WEBCAM)
-    views = looked_at(video, list(shown_around(video, 24)))
+    video, views = shown_to_webcam()
     one, other = (fit_lens(views, video.board).camera for _ in range(2))
     assert other.distortion == pytest.approx(one.distortion, rel=1e-6)  # OpenCV's threads add in any order
     assert other.fx_px == pytest.approx(one.fx_px, rel=1e-9)
