@@ -1,5 +1,6 @@
 """Picture and pose belong together while the rig turns fast, by what the pixels say; and any camera matrix is matched."""
 
+from base64 import b64decode
 from typing import Any
 
 import cv2
@@ -34,12 +35,18 @@ POST_M, EYE_M = 30.0, 60.0
 _WATCH = """(count) => new Promise((resolve) => {
     const seen = [];
     let drawn = agora.stats().framesDrawn;
+    // in pieces: a call takes no more arguments; as text: of so many numbers, each would be packed by itself
+    const packed = (bytes) => {
+        let text = "";
+        for (let i = 0; i < bytes.length; i += 32768) text += String.fromCharCode(...bytes.subarray(i, i + 32768));
+        return btoa(text);
+    };
     const look = () => {
         const stats = agora.stats();
         if (stats.framesDrawn !== drawn) {
             drawn = stats.framesDrawn;
             const [code, posts] = [agora.readPixels(0, 10, 640, 1), agora.readPixels(0, 200, 640, 80)];
-            seen.push({ code: [...code], posts: [...posts], id: stats.lastFrameId });
+            seen.push({ code: packed(code), posts: packed(posts), id: stats.lastFrameId });
         }
         if (seen.length >= count) resolve(seen);
         else requestAnimationFrame(look);
@@ -56,7 +63,12 @@ def coded(number: int) -> NDArray[np.uint8]:
     return picture
 
 
-def number_in(row: NDArray[np.int64]) -> int:
+def pixels_of(packed: str, rows: int) -> NDArray[np.uint8]:
+    """Return rows of 640 pixels, (rows, 640, 4)."""
+    return np.frombuffer(b64decode(packed), np.uint8).reshape(rows, 640, 4)
+
+
+def number_in(row: NDArray[np.uint8]) -> int:
     """Return the number that a row (640, 4) of pixels tells."""
     return sum(int(row[bit * CELL_PX + CELL_PX // 2, 0] > 127) << bit for bit in range(BITS))
 
@@ -84,7 +96,7 @@ def seen_by(camera: CameraModel, points: NDArray[np.float64], T_site_cam: NDArra
     return np.asarray(pixels[(np.abs(pixels - np.array(SIZE_PX) / 2) < np.array(SIZE_PX) / 2 - 12).all(axis=1)])
 
 
-def columns_of_posts(strip: NDArray[np.int64]) -> NDArray[np.float64]:
+def columns_of_posts(strip: NDArray[np.uint8]) -> NDArray[np.float64]:
     """Return where magenta stands in a strip (80, 640, 4): the middle of each patch."""
     mask = (strip[..., 0] > 170) & (strip[..., 1] < 110) & (strip[..., 2] > 170)
     count, _, _, middles = cv2.connectedComponentsWithStats(mask.astype(np.uint8))
@@ -112,9 +124,9 @@ def test_every_picture_is_drawn_by_its_own_pose_at_100_degrees_a_second(
         seen: list[dict[str, Any]] = ar.ask(_WATCH, DRAWN_FRAMES)
     numbers, posts = [], 0
     for shown in seen:
-        number = number_in(np.array(shown["code"]).reshape(640, 4))
+        number = number_in(pixels_of(shown["code"], 1)[0])
         expected = np.sort(seen_by(DISTORTED, points, turned(heading_of(number), EYE_M))[:, 0])
-        found = columns_of_posts(np.array(shown["posts"]).reshape(80, 640, 4))
+        found = columns_of_posts(pixels_of(shown["posts"], 80))
         inner = found[(found > 16) & (found < SIZE_PX[0] - 17)]
         assert shown["id"] == number
         assert all(np.abs(found - post).min() < NEAR_PX for post in expected), (number, expected, found)
