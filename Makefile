@@ -61,11 +61,11 @@ setup: $(BIN)/.demo web/dist/.complete $(MODELS)/.complete ## all that `agora de
 build: $(BIN)/.demo web/node_modules/.package-lock.json ## build the site's models, where anything has changed; ARGS="--report" goes to agora build
 	@$(BIN)/agora build $(ARGS)
 
-test: setup check machine ## set up, check, and run every test
+test: setup check machine ## set up, check, and run every test; ARGS="-n 0 -k tour" goes to pytest
 	@$(call say,web tests)
 	@npm --prefix web test
 	@$(call say,Python tests)
-	@$(BIN)/pytest $(ARGS)
+	@$(BIN)/pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder $(ARGS)
 
 check: $(BIN)/.dev web/node_modules/.package-lock.json ## format, lint and types, in Python and TypeScript
 	@$(call say,$(CHECKING))

@@ -35,8 +35,13 @@ BROWSER_FLAGS = (
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Run the browser's tests last: while Playwright is open, its event loop runs in this thread and `asyncio.run` is refused."""
-    items.sort(key=lambda item: "browser" in getattr(item, "fixturenames", ()))
+    """Run the files that need the browser last: while Playwright is open, its event loop runs here and `asyncio.run` is refused.
+
+    Of those, files with slow tests go first, so that in the end no process works on a long one alone.
+    """
+    driving = {item.path for item in items if "browser" in getattr(item, "fixturenames", ())}
+    quick = driving - {item.path for item in items if item.get_closest_marker("slow")}
+    items.sort(key=lambda item: (item.path in driving, item.path in quick))
 
 
 @pytest.fixture(scope="session")
