@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -57,6 +58,18 @@ def whole(write: Write, measurements: list[Measurement]) -> Log:
     return write("whole", measurements)
 
 
+@pytest.fixture(scope="module")
+def run_whole(whole: Log) -> Callable[[str], Run]:
+    """Runs an estimator on everything, once."""
+    return cache(lambda name: run(whole, name))
+
+
+@pytest.fixture(scope="module")
+def stripped(write: Write, measurements: list[Measurement]) -> Log:
+    """Everything but the truth."""
+    return write("stripped", (m for m in measurements if not isinstance(m, TruePose)))
+
+
 def _rows(result: Run) -> list[tuple[object, ...]]:
     return [
         (p.t_ns, p.p_site_m, p.wxyz_site_body, p.v_site_m_s, p.cov.tobytes(), p.motion_model, p.heading_known)
@@ -65,9 +78,9 @@ def _rows(result: Run) -> list[tuple[object, ...]]:
 
 
 @pytest.mark.parametrize("name", ESTIMATORS)
-def test_every_figure_is_there(whole: Log, name: str) -> None:
+def test_every_figure_is_there(run_whole: Callable[[str], Run], name: str) -> None:
     """The keys that other programs rely on, each a number, or None where the estimator has none."""
-    found = figures(run(whole, name))
+    found = figures(run_whole(name))
     is_truth, has_eyes = name == "truth", name.startswith("camera")
     is_paper = not is_truth and not name.endswith("precise")
     assert (found["log"], found["estimator"]) == ("whole", name)
@@ -99,9 +112,8 @@ def test_every_figure_is_there(whole: Log, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["gps-imu/cmm", CAMERA, *PRECISE])
-def test_ground_truth_teaches_nothing(whole: Log, write: Write, measurements: list[Measurement], name: str) -> None:
+def test_ground_truth_teaches_nothing(whole: Log, stripped: Log, measurements: list[Measurement], name: str) -> None:
     """Stripped of it, a log gives bit-identical poses. Its origin is part of the question, so that it is given back."""
-    stripped = write("stripped", (m for m in measurements if not isinstance(m, TruePose)))
     assert not stripped.info.has_truth
     first = next(m for m in measurements if isinstance(m, GpsFix))
     assert log_origin(stripped).lat_deg == first.lat_deg
@@ -114,9 +126,9 @@ def test_ground_truth_teaches_nothing(whole: Log, write: Write, measurements: li
     assert found["gps"] is None
 
 
-def test_the_same_answer_twice(whole: Log) -> None:
+def test_the_same_answer_twice(whole: Log, run_whole: Callable[[str], Run]) -> None:
     """Pictures and RANSAC included."""
-    assert _rows(run(whole, CAMERA)) == _rows(run(whole, CAMERA))
+    assert _rows(run(whole, CAMERA)) == _rows(run_whole(CAMERA))
 
 
 def test_truth_without_attitude_or_height_leaves_gaps(write: Write, measurements: list[Measurement]) -> None:
@@ -138,9 +150,9 @@ def test_truth_without_attitude_or_height_leaves_gaps(write: Write, measurements
 
 
 @pytest.mark.parametrize("name", ["gps-imu/famm", *PRECISE])
-def test_poses_are_causal_and_regular(whole: Log, name: str) -> None:
+def test_poses_are_causal_and_regular(whole: Log, run_whole: Callable[[str], Run], name: str) -> None:
     """Fifty a second; what arrives after t changes no pose up to t."""
-    result = run(whole, name)
+    result = run_whole(name)
     t = np.array([pose.t_ns for pose in result.poses])
     assert (np.diff(t) == 20_000_000).all()
 
