@@ -71,9 +71,8 @@ check: $(BIN)/.dev web/node_modules/.package-lock.json ## format, lint and types
 	@$(call say,$(CHECKING))
 	@$(BIN)/ruff format --check .
 	@$(BIN)/ruff check .
-	@$(BIN)/mypy
-	@npm --prefix web run --silent typecheck
-	@npm --prefix web run --silent lint
+	@$(BIN)/mypy & python=$$!; web=0; npm --prefix web run --silent typecheck && npm --prefix web run --silent lint || web=$$?; \
+		wait $$python && exit $$web
 
 bench: setup $(BIN)/.dev ## measure speed beside the peers; writes build/bench.json
 	@mkdir -p build

@@ -12,7 +12,7 @@ from tests.web.pages import ArPage, open_page
 from tracker.geometry import wrap_rad
 from tracker.measurements import Matrix
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 FINGER_PX = np.array([[2.0, -1.0], [-2.0, 1.5], [1.0, 2.0]])
 """By how much each tap misses."""

@@ -13,7 +13,7 @@ from tests.web.likeness import LEAST_LIKENESS, MOST_BLEMISH, Picture, blemish, k
 from tests.web.page_gallery import GOLDEN, served
 from tests.web.visiting import LANGUAGES, Visit, table, visit
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 KINDS = table()[1]
 MOST_BYTES = 3_000_000
