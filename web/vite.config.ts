@@ -1,6 +1,7 @@
 import { fileURLToPath } from "node:url";
 import type { Plugin } from "vite";
 import { defineConfig } from "vitest/config";
+import { ahead } from "./tools/ahead.ts";
 import { offline } from "./tools/offline.ts";
 
 const here = (path: string): string => fileURLToPath(new URL(path, import.meta.url));
@@ -23,7 +24,7 @@ const program = "127.0.0.1:8000"; // `agora demo`, when the pages are developed 
 
 export default defineConfig({
   base: "/",
-  plugins: [pages(), offline()],
+  plugins: [pages(), ahead(), offline()],
   build: {
     target: "es2022",
     chunkSizeWarningLimit: 900, // three.js is most of it

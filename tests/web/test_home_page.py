@@ -7,7 +7,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from playwright.sync_api import Browser
+from playwright.sync_api import Browser, Route
 
 from server.showing import Showing
 from tests.web.pages import SIZE_PX, ArPage, Pixels, open_page
@@ -54,6 +54,34 @@ def place_of(page: ArPage) -> tuple[float, float, float]:
     """Return where the eye is, site frame."""
     T = page.ask("agora.pose().T_site_cam")
     return T[3], T[7], T[11]
+
+
+@pytest.mark.parametrize("address", ["", "ar", "replay/walk"])
+def test_before_any_script_a_page_shows_what_is_coming_without_a_word_of_another_language(
+    browser: Browser, showing: Showing, address: str
+) -> None:
+    with open_page(browser, java_script_enabled=False) as page:
+        page.page.goto(f"{showing.url}{address}")
+        assert page.page.locator("#arrival svg").is_visible()
+        words = re.findall(r"[^\W\d]+", page.page.inner_text("body"))
+        assert {word.lower() for word in words} == {"agora"}
+
+
+def test_until_the_first_picture_a_page_says_that_it_comes_and_how_far_it_is(
+    browser: Browser, showing: Showing
+) -> None:
+    held: list[Route] = []
+    with open_page(browser, locale="tr-TR", service_workers="block") as page:
+        page.page.route("**/*.glb*", lambda route: held.append(route))
+        page.page.goto(f"{showing.url}?walkers=0")
+        page.until("document.querySelector('#arrival-bar').value > 0")
+        assert page.page.inner_text("#arrival p") == "Meydan yolda …"
+        for route in held:
+            route.continue_()
+        page.page.unroute("**/*.glb*")
+        page.settle()
+        assert page.page.locator("#arrival").is_hidden()
+        assert page.ask("document.querySelector('#arrival-bar').value") == pytest.approx(0.8)
 
 
 def test_one_material_of_one_level_is_one_draw_call(home: ArPage) -> None:

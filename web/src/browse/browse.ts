@@ -12,9 +12,10 @@ import type { Monument, Site, View } from "../site";
 import { loadGround } from "../walkable";
 import { hashOf, readAddress, type Shown } from "./address";
 import type { Directory } from "./directory";
-import { type Epoch, Epochs } from "./epochs";
+import { Epochs } from "./epochs";
 import { type Eye, looking } from "./eye";
 import { overlooking } from "./finding";
+import { type Epoch, firstOf } from "./first";
 import type { Ground } from "./ground";
 import { Guide } from "./guide";
 import { fillKeys } from "./keys";
@@ -341,9 +342,4 @@ export class Browse {
     console.warn(error);
     this.showEpoch();
   }
-}
-
-function firstOf(site: Site, { past }: Shown): Epoch {
-  if (past !== null) return past > 0.5 ? "roman" : "today";
-  return "roman" in site.models ? "roman" : "today";
 }

@@ -3,11 +3,8 @@
 import { Square } from "../model";
 import type { Site } from "../site";
 import { ANCIENT_YEAR, atSolarHour, sunAt } from "../sun";
+import { EPOCHS, type Epoch } from "./first";
 import type { Stage } from "./stage";
-
-/** From the first to the last in time's backward order: the share is how much is shown of the last. */
-export const EPOCHS = ["today", "roman"] as const;
-export type Epoch = (typeof EPOCHS)[number];
 
 /** The sun of the slider is that of a day in early summer, whatever the day: 2026-06-10, noon UTC. */
 const DAY_S = 1_781_092_800;

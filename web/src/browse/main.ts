@@ -6,9 +6,10 @@ import { showFlat } from "../flat/flat";
 import type { Matrix4, Vector3 } from "../frames";
 import { languages, say } from "../language/speech";
 import { parseSite, type Site } from "../site";
-import { readAddress } from "./address";
+import { readAddress, type Shown } from "./address";
 import type { Browse } from "./browse";
 import { Directory } from "./directory";
+import { firstOf } from "./first";
 import { showWalks } from "./walks";
 
 const directory = new Directory();
@@ -22,6 +23,16 @@ async function loadSite(): Promise<Site> {
   return site;
 }
 
+/** Begin to fetch what is drawn first, while what draws it is still on its way. */
+function fetchAhead(site: Site, shown: Shown): Site {
+  const first = site.models[firstOf(site, shown)]?.at(-1);
+  if (first === undefined) return site;
+  const link = document.createElement("link");
+  Object.assign(link, { rel: "preload", as: "fetch", crossOrigin: "anonymous", href: first });
+  document.head.append(link);
+  return site;
+}
+
 /** Show the square as a plan, where it cannot be drawn. */
 async function showPlan(): Promise<void> {
   showFlat(await loadSite(), document.querySelector(".everyone"));
@@ -30,8 +41,11 @@ async function showPlan(): Promise<void> {
 async function show(): Promise<void> {
   try {
     // what draws is large: by itself, so that the page speaks the visitor's language before it has come
-    const [site, drawing] = await Promise.all([loadSite(), import("./browse")]);
     const shown = readAddress(location.search, location.hash);
+    const [site, drawing] = await Promise.all([
+      loadSite().then((found) => fetchAhead(found, shown)),
+      import("./browse"),
+    ]);
     browse = new drawing.Browse(site, shown, directory);
     await browse.start(shown);
   } catch (error) {
