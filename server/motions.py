@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from assets.kept import kept_arrays
 from tracker.feature_camera import Faults, FeatureCamera, World
 from tracker.log import Log
-from tracker.measurements import Frame, Image, Matrix, VisualMotion
+from tracker.measurements import Frame, Image, Matrix, VisualMotion, VisualTracks
 from tracker.simulate import Walk
 from tracker.vision import VisionFrontEnd, VisionSettings
 
-VERSION = 2
+VERSION = 3
 """Of the front end and the feature camera: raise it when their motions change for the same settings."""
 FOLDER = Path("build/tracks")
 
@@ -102,6 +102,7 @@ def _kept(folder: Path, content: str, front_end: VisionFrontEnd, frames: Iterato
 
 
 def _arrays(motions: list[VisualMotion]) -> dict[str, NDArray[np.generic]]:
+    tracks = [m.tracks for m in motions if m.tracks is not None]
     return {
         "stamps": np.array([(m.t_ns, m.t_recv_ns, m.frame_id, m.t_key_ns) for m in motions], np.int64).reshape(-1, 4),
         "R_key_cam": np.array([m.R_key_cam for m in motions], np.float64).reshape(-1, 3, 3),
@@ -109,14 +110,24 @@ def _arrays(motions: list[VisualMotion]) -> dict[str, NDArray[np.generic]]:
         "inliers": np.array([m.inliers for m in motions], np.int64),
         "parallax_px": np.array([m.parallax_px for m in motions], np.float64),
         "is_keyframe": np.array([m.is_keyframe for m in motions], np.bool_),
+        "track_counts": np.array([-1 if m.tracks is None else len(m.tracks.ids) for m in motions], np.int64),
+        "track_ids": np.concatenate([np.zeros(0, np.int64), *(t.ids for t in tracks)]),
+        "track_rays": np.concatenate([np.zeros((0, 4), np.float32), *(np.hstack([t.xy_key, t.xy]) for t in tracks)]),
     }
 
 
 def _motions(kept: dict[str, NDArray[np.generic]]) -> list[VisualMotion]:
     rest = (kept[name].tolist() for name in ("stamps", "direction_key", "inliers", "parallax_px", "is_keyframe"))
     return [
-        VisualMotion(t_ns, t_recv_ns, frame_id, t_key_ns, R, (x, y, z), inliers, parallax_px, is_keyframe)
-        for R, (t_ns, t_recv_ns, frame_id, t_key_ns), (x, y, z), inliers, parallax_px, is_keyframe in zip(
-            kept["R_key_cam"].astype(np.float64), *rest, strict=True
+        VisualMotion(t_ns, t_recv_ns, frame_id, t_key_ns, R, (x, y, z), inliers, parallax_px, is_keyframe, tracks)
+        for R, tracks, (t_ns, t_recv_ns, frame_id, t_key_ns), (x, y, z), inliers, parallax_px, is_keyframe in zip(
+            kept["R_key_cam"].astype(np.float64), _tracks(kept), *rest, strict=True
         )
     ]
+
+
+def _tracks(kept: dict[str, NDArray[np.generic]]) -> Iterator[VisualTracks | None]:
+    ids, rays, end = kept["track_ids"].astype(np.int64), kept["track_rays"].astype(np.float32), 0
+    for count in kept["track_counts"].tolist():
+        begin, end = end, end + max(0, count)
+        yield None if count < 0 else VisualTracks(ids[begin:end], rays[begin:end, :2], rays[begin:end, 2:])

@@ -131,6 +131,20 @@ class VisualMotion:
     """Median displacement of the inliers that rotation does not explain."""
     is_keyframe: bool
     """The present picture becomes the next keyframe."""
+    tracks: "VisualTracks | None" = None
+    """Of a picture that becomes a keyframe: where its features are in it, and where they were in the keyframe before."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class VisualTracks:
+    """Features followed from one keyframe to the next, as rays on the plane z = 1 of the camera, lens undone."""
+
+    ids: NDArray[np.int64]
+    """(N,) of each feature, the same from its first picture to its last."""
+    xy_key: NDArray[np.float32]
+    """(N, 2) where it was in the keyframe before."""
+    xy: NDArray[np.float32]
+    """(N, 2) where it is now."""
 
 
 @dataclass(frozen=True, slots=True)

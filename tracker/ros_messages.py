@@ -24,6 +24,7 @@ from tracker.measurements import (
     TruePose,
     Vector3,
     VisualMotion,
+    VisualTracks,
     Wxyz,
 )
 from tracker.rig import CameraModel, DistortionModel
@@ -43,7 +44,7 @@ _VIDEO_DEFINITION = "builtin_interfaces/Time timestamp\nstring frame_id\nuint8[]
 _SENTENCE_DEFINITION = "std_msgs/Header header\nstring sentence\n"
 
 #: Ours, since ROS has none: what the camera's front end made of a picture. `header.stamp` is the picture's.
-_MOTION_DEFINITION = """std_msgs/Header header
+_FORMER_MOTION_DEFINITION = """std_msgs/Header header
 builtin_interfaces/Time key_stamp
 uint32 frame_id
 float64[9] r_key_cam
@@ -52,6 +53,11 @@ uint32 inliers
 float64 parallax_px
 bool is_keyframe
 """
+_MOTION_DEFINITION = f"""{_FORMER_MOTION_DEFINITION}int64[] track_ids
+float32[] track_rays
+"""
+#: Recorded before features were.
+FORMER_MOTION = "agora_msgs/msg/FormerVisualMotion"
 
 #: Ours: what visitors say. `header.stamp` is of the picture that they point at, or when they say it.
 _SIGHTING_DEFINITION = """std_msgs/Header header
@@ -69,6 +75,7 @@ TYPES = get_typestore(Stores.ROS2_HUMBLE)
 TYPES.register(get_types_from_msg(_VIDEO_DEFINITION, VIDEO))
 TYPES.register(get_types_from_msg(_SENTENCE_DEFINITION, SENTENCE))
 TYPES.register(get_types_from_msg(_MOTION_DEFINITION, MOTION))
+TYPES.register(get_types_from_msg(_FORMER_MOTION_DEFINITION, FORMER_MOTION))
 TYPES.register(get_types_from_msg(_SIGHTING_DEFINITION, SIGHTING))
 TYPES.register(get_types_from_msg(_STANDPOINT_DEFINITION, STANDPOINT))
 TYPES.register(get_types_from_msg(_RETRACTION_DEFINITION, RETRACTION))
@@ -81,6 +88,8 @@ def decode(data: bytes, ros_type: str) -> RosMessage:
     try:
         return TYPES.deserialize_cdr(data, ros_type)
     except Exception as error:  # whatever hostile bytes make generated code raise
+        if ros_type == MOTION:
+            return decode(data, FORMER_MOTION)
         raise MalformedInput(
             f"A {ros_type} message does not decode: it is {len(data)} bytes of something else."
         ) from error
@@ -178,6 +187,10 @@ def gps_velocity(m: RosMessage, t_recv_ns: int) -> GpsVelocity:
 
 def visual_motion(m: RosMessage, t_recv_ns: int) -> VisualMotion:
     """Return the motion that a front end had found."""
+    ids = np.array(getattr(m, "track_ids", ()), np.int64)
+    rays = np.array(getattr(m, "track_rays", ()), np.float32)
+    has_tracks = len(ids) > 0 and len(rays) == 4 * len(ids)
+    rays = rays.reshape(-1, 4) if has_tracks else rays
     return VisualMotion(
         stamp_ns(m.header.stamp),
         t_recv_ns,
@@ -188,6 +201,7 @@ def visual_motion(m: RosMessage, t_recv_ns: int) -> VisualMotion:
         int(m.inliers),
         float(m.parallax_px),
         bool(m.is_keyframe),
+        VisualTracks(ids, rays[:, :2], rays[:, 2:]) if has_tracks else None,
     )
 
 

@@ -68,7 +68,11 @@ def _is_finite(measurement: Measurement) -> bool:
             return all(map(isfinite, (*measurement.p_map_body_m, *measurement.wxyz_map_body)))
         case VisualMotion():
             numbers = (*measurement.direction_key, measurement.parallax_px)
-            return bool(np.all(np.isfinite(measurement.R_key_cam))) and all(map(isfinite, numbers))
+            tracks = measurement.tracks
+            rays = () if tracks is None else (tracks.xy_key, tracks.xy)
+            return all(bool(np.all(np.isfinite(m))) for m in (measurement.R_key_cam, *rays)) and all(
+                map(isfinite, numbers)
+            )
         case Sighting():
             return all(map(isfinite, (*measurement.point_site_m, *measurement.ray_cam, measurement.sigma_rad)))
         case Standpoint():

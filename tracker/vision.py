@@ -14,7 +14,7 @@ from tracker.errors import MalformedInput
 from tracker.estimator import Snapshot
 from tracker.features import NO_FEATURES, Features, FeatureSource, View
 from tracker.klt import Klt
-from tracker.measurements import Frame, Matrix, Vector3, VisualMotion
+from tracker.measurements import Frame, Matrix, Vector3, VisualMotion, VisualTracks
 from tracker.rig import CameraModel
 
 
@@ -54,6 +54,13 @@ class _Tracks:
     """(N, 3) where they were seen at the keyframe."""
     born: int
     """How many features the keyframe began with."""
+    ids: NDArray[np.int64]
+    """(N,) the same for a feature as long as it is followed."""
+    next_id: int
+
+    def narrowed(self, features: Features, kept: NDArray[np.bool_]) -> "_Tracks":
+        """Return what is left of it, `features`, of which `kept` says which they were."""
+        return replace(self, features=features, bearings_key=self.bearings_key[kept], ids=self.ids[kept])
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,18 +90,17 @@ class VisionFrontEnd:
         if tracks is not None and frame.t_ns <= tracks.view.t_ns:
             return None
         if tracks is None or not self._follows(tracks.view, view):
-            self._tracks = self._keyframe(view, NO_FEATURES)
+            self._tracks = self._keyframe(view, None)
             return None
-        features, kept = self.source.follow(tracks.view, view, tracks.features)
-        if len(features) < 8:
-            self._tracks = self._keyframe(view, features)
+        tracks = replace(tracks.narrowed(*self.source.follow(tracks.view, view, tracks.features)), view=view)
+        if len(tracks.features) < 8:
+            self._tracks = self._keyframe(view, tracks)
             return None
-        tracks = replace(tracks, view=view, features=features, bearings_key=tracks.bearings_key[kept])
         motion = self._motion(tracks, self._camera_of(view))
         good = motion.inliers
-        seen = replace(tracks, features=features.chosen(good), bearings_key=tracks.bearings_key[good])
+        seen = tracks.narrowed(tracks.features.chosen(good), good)
         is_keyframe = self._is_due(seen, motion.parallax_px)
-        self._tracks = self._keyframe(view, seen.features) if is_keyframe else seen
+        self._tracks = self._keyframe(view, seen) if is_keyframe else seen
         inliers = int(np.count_nonzero(good))
         if inliers < self.settings.least_inliers:
             return None
@@ -108,7 +114,12 @@ class VisionFrontEnd:
             inliers,
             motion.parallax_px,
             is_keyframe,
+            self._followed(seen) if is_keyframe else None,
         )
+
+    def _followed(self, seen: _Tracks) -> VisualTracks:
+        xy, key = self._rays(seen.view, seen.features), seen.bearings_key
+        return VisualTracks(seen.ids, (key[:, :2] / key[:, 2:]).astype(np.float32), xy.astype(np.float32))
 
     def _follows(self, before: View, after: View) -> bool:
         """Return whether one picture can be tracked into another."""
@@ -129,21 +140,28 @@ class VisionFrontEnd:
             return self.camera
         return lens.scaled(self.camera, view.width_px, view.height_px)
 
-    def _keyframe(self, view: View, kept: Features) -> _Tracks:
+    def _rays(self, view: View, features: Features) -> Matrix:
+        """Return (N, 2) features on the plane z = 1."""
+        return lens.unproject(self._camera_of(view), features.points_px.astype(np.float64))
+
+    def _keyframe(self, view: View, tracks: _Tracks | None) -> _Tracks:
         """Hold a picture: what is tracked already goes on, new features fill the empty parts."""
+        features = kept = tracks.features if tracks is not None else NO_FEATURES
         wanted = self.settings.features - len(kept)
-        features = kept
         if wanted > 0:
             pixels = view.width_px * view.height_px
             apart_px = max(5, round(0.7 * (pixels / self.settings.features) ** 0.5 / 2))
             features = kept.joined(self.source.detect(view, kept, wanted, apart_px))
-        rays = lens.unproject(self._camera_of(view), features.points_px.astype(np.float64))
-        return _Tracks(view, features, view.t_ns, two_view.bearings(rays), len(features))
+        bearings = two_view.bearings(self._rays(view, features))
+        first = self._tracks.next_id if self._tracks is not None else 0
+        end = first + len(features) - len(kept)
+        new = np.arange(first, end)
+        ids = np.concatenate([tracks.ids, new]) if tracks is not None else new
+        return _Tracks(view, features, view.t_ns, bearings, len(features), ids, end)
 
     def _motion(self, tracks: _Tracks, camera: CameraModel) -> _Motion:
         settings = self.settings
-        xy = lens.unproject(camera, tracks.features.points_px.astype(np.float64))
-        b_key, b_cam = tracks.bearings_key, two_view.bearings(xy)
+        b_key, b_cam = tracks.bearings_key, two_view.bearings(self._rays(tracks.view, tracks.features))
         sigma_rad = settings.bearing_sigma_px / camera.fx_px
         R_turn = two_view.fit_rotation(b_key, b_cam, sigma_rad)
         moved_px = camera.fx_px * two_view.parallax(b_key, b_cam, R_turn)

@@ -11,13 +11,16 @@ from math import cos, sin
 import numpy as np
 from numpy.random import Generator
 
+from tests.tracker.precise.points import seen_from
 from tracker.geometry import rotate
 from tracker.measurements import Matrix, Vector3
 from tracker.precise import observations
-from tracker.precise.error_model import start_covariance
+from tracker.precise.error_model import SIZE, start_covariance
 from tracker.precise.error_state import ErrorState, Observation
 from tracker.precise.navigation import Biases, Navigation
+from tracker.precise.parallax import Cameras, constraint
 from tracker.precise.settings import PreciseSettings
+from tracker.precise.tracks import seen_in
 from tracker.rig import R_BODY_CAM_FORWARD
 
 GRAVITY_M_S2 = 9.8
@@ -104,18 +107,20 @@ def _measured(state: ErrorState, index: int, phase: int, rng: Generator) -> Iter
 
 
 def _seen(state: ErrorState, index: int, rng: Generator) -> Iterator[tuple[Observation, float, bool]]:
-    R_body_cam = R_BODY_CAM_FORWARD
-    for clone in range(len(state.clones)):
-        yield observations.rotation_to_clone(state, clone, np.eye(3), R_body_cam), 0.004, True
-        held = state.clones[clone]
-        base = np.subtract(state.nav.p_m, held.p_m)
-        ahead = R_body_cam.T @ held.R_site_body.T @ base
-        if np.linalg.norm(base) > 0.2:
-            x, y, z = (ahead / np.linalg.norm(ahead)).tolist()
-            seen = observations.direction_from_clone(state, clone, (x, y, z), R_body_cam, _LEVER)
-            if seen is not None:
-                yield seen, 0.06, True
+    """Yield what features ahead of the rig say of the pictures that are held."""
+    if len(state.clones) >= 3:
+        state.settle()
+        R_site_body = np.array([clone.R_site_body for clone in state.clones])
+        lever_m = R_site_body @ np.array(_LEVER)
+        p_m = np.array([clone.p_m for clone in state.clones]) + lever_m
+        cameras = Cameras(R_site_body @ R_BODY_CAM_FORWARD, p_m, lever_m)
+        points_m = p_m[-1] + (cameras.R_site_cam[-1] @ rng.uniform((-5, -4, 6), (5, 4, 20), (12, 3)).T).T
+        xy = seen_from(cameras.R_site_cam, cameras.p_site_m, points_m)
+        xy = xy[seen_in(xy).sum(axis=1) >= 3]
+        if len(xy):
+            said = constraint(cameras, xy, 0.001, state.covariance[SIZE:, SIZE:], 9.0)
+            yield (said.residual, [(slice(SIZE, SIZE + said.H.shape[1]), said.H)]), 1.0, False
     if index % (RATE_HZ // 4) == 0:
-        state.hold(2)
+        state.hold(4)
     elif rng.uniform() < 0.05 and state.clones:
         state.forget(0)

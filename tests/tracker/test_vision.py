@@ -1,5 +1,7 @@
 """The camera's front end on pictures whose motion is known: a textured wall seen by a camera that turns and moves."""
 
+from itertools import pairwise
+
 import cv2
 import numpy as np
 import pytest
@@ -80,6 +82,25 @@ def test_a_translation_has_its_direction(step: Vector3, turn: Vector3) -> None:
         expected = matrix_from_wxyz(wxyz_of((0.0, key_turn, 0.0))).T @ world
         assert float(np.dot(expected, motion.direction_key)) > np.cos(np.radians(20.0))
         assert motion.inliers >= 30
+
+
+def test_features_keep_their_numbers_from_keyframe_to_keyframe() -> None:
+    """Where one is seen again it was told last, and all follow one wall or another as the camera goes aside."""
+    keys = [m for m in _run((0.0, 0.0, 0.0), (0.06, 0.0, 0.0), count=40) if m.is_keyframe]
+    assert all(m.tracks is None for m in _run((0.0, 0.0, 0.0), (0.06, 0.0, 0.0), count=3) if not m.is_keyframe)
+    assert len(keys) >= 3
+    for before, now in pairwise(keys):
+        assert before.tracks is not None
+        assert now.tracks is not None
+        assert now.t_key_ns == before.t_ns
+        assert len(now.tracks.ids) == now.inliers == len(set(now.tracks.ids.tolist()))
+        _, then, there = np.intersect1d(before.tracks.ids, now.tracks.ids, return_indices=True)
+        assert len(then) > 30
+        np.testing.assert_allclose(before.tracks.xy[then], now.tracks.xy_key[there], atol=1e-6)
+        moved_m = 0.06 * (now.t_ns - now.t_key_ns) / PERIOD_NS
+        depth_m = moved_m / np.maximum(1e-3, now.tracks.xy_key[:, 0] - now.tracks.xy[:, 0])
+        nearest = np.abs(depth_m[:, None] / np.array([wall for wall, _ in WALLS]) - 1.0).min(axis=1)
+        assert np.median(nearest) < 0.1
 
 
 def test_what_cannot_be_tracked_gives_nothing() -> None:

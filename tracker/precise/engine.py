@@ -42,8 +42,6 @@ from tracker.rig import Rig
 _I3 = np.eye(3)
 #: Who has been so far from where the receiver was first has walked: then motion tells north.
 _WALKED_M = 6.0
-#: Pictures held for those to come.
-_HELD = 2
 
 
 class Engine:
@@ -137,7 +135,7 @@ class Engine:
             case CompassHeading():
                 self._compass.heading(wrap_rad(measurement.yaw_rad - yaw_of(self.best.nav.wxyz_site_body)))
             case VisualMotion():
-                self._take_vision(measurement)
+                self._eye.take(self.hypotheses, measurement)
             case Sighting():
                 self._take_sighting(measurement)
             case Standpoint():
@@ -146,8 +144,7 @@ class Engine:
                     lambda f: f.correct(*observations.position(f, measurement.p_site_m), noise, gated=False)
                 )
             case Keyframe():
-                for filter_ in self.hypotheses.filters:
-                    filter_.hold(_HELD)
+                self._eye.hold(self.hypotheses, measurement.t_ns)
 
     def _take_imu(self, sample: ImuSample, *, counted: bool = True, in_gap: bool = False) -> None:
         last = self._last
@@ -348,11 +345,3 @@ class Engine:
         hypotheses.correct(
             lambda f: f.correct(*observations.magnetic_yaw(f, sample.field_body_t, declination_rad), noise)
         )
-
-    # -- camera -------------------------------------------------------------------------------------------------------
-
-    def _take_vision(self, motion: VisualMotion) -> None:
-        assert self.hypotheses is not None
-        self.hypotheses.correct(lambda f: self._eye.rotation(f, motion))
-        if any(motion.direction_key):
-            self.hypotheses.correct(lambda f: self._eye.direction(f, motion))

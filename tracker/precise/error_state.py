@@ -18,6 +18,7 @@ from tracker.geometry import conjugate, matrix_from_wxyz, multiply, normalise
 from tracker.geometry import exp as rotation_exp
 from tracker.geometry import log as log_rotation
 from tracker.measurements import Matrix, Vector3
+from tracker.precise.cross import cross_matrices
 from tracker.precise.error_model import (
     BG,
     FORGETTING,
@@ -28,6 +29,7 @@ from tracker.precise.error_model import (
     THETA,
     P,
     ProcessNoise,
+    V,
     inertial_transition,
     skew,
 )
@@ -154,6 +156,7 @@ class ErrorState:
         *,
         gated: bool = True,
         tells_north: bool = True,
+        is_relative: bool = False,
     ) -> Correction:
         """Take a measurement in, in Joseph's form.
 
@@ -164,6 +167,7 @@ class ErrorState:
             gated: Whether what lies far out counts for less (Huber), and further out for nothing.
             tells_north: Whether it may tell yaw, now and of what is held, and what is wrong with the gyroscope's z; else their
                 doubt is taken into account, and they stay as they are.
+            is_relative: Whether it would be the same if all places and attitudes were turned as one (see `_turn_doubts`).
 
         Reference:
             Schmidt, Application of state-space methods to navigation problems, 1966 (considered states).
@@ -183,8 +187,10 @@ class ErrorState:
         if not tells_north:
             K[_NORTH] = 0.0
             K[SIZE + 5 :: 6] = 0.0
-        self.covariance = _joseph(cov, K, H, noise)
-        self.move(K @ residual)
+        self.covariance, error = _joseph(cov, K, H, noise), K @ residual
+        if is_relative:
+            self._turn_doubts(error)
+        self.move(error)
         return Correction(nis, _log_likelihood(min(nis, self.settings.reject_nis), S), used=True)
 
     def correct_far(self, observe: Callable[["ErrorState"], Observation], noise: Matrix) -> Correction:
@@ -232,6 +238,21 @@ class ErrorState:
             p = (clone.p_m[0] + d[0], clone.p_m[1] + d[1], clone.p_m[2] + d[2])
             self.clones[index] = Clone(clone.t_ns, p, matrix_from_wxyz(clone_q), clone_q)
         self.restart_chunk()
+
+    def _turn_doubts(self, error: Matrix) -> None:
+        """Let what all share of the doubt of attitude turn places and velocities as they will be after a move by `error`.
+
+        A filter that forgets this believes after some pictures that these have told it north.
+
+        Reference:
+            Barrau and Bonnabel, An EKF-SLAM algorithm with consistency properties, 2015 (right-invariant error).
+        """
+        cov, clones = self.covariance, SIZE + 6 * np.arange(len(self.clones))
+        moved = np.concatenate([[P.start, V.start], clones])[:, None] + np.arange(3)
+        turned = np.concatenate([[THETA.start, THETA.start], clones + 3])[:, None] + np.arange(3)
+        by_turn = -cross_matrices(error[moved])
+        cov[moved] += by_turn @ cov[turned]
+        cov[:, moved] += np.einsum("inj,nkj->ink", cov[:, turned], by_turn)
 
     # -- clones -------------------------------------------------------------------------------------------------------
 

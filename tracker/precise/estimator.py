@@ -127,8 +127,6 @@ class PreciseEstimator:
             return Outcome.USED
         if isinstance(measurement, VisualMotion):
             self._timeline.add(Keyframe(measurement.t_key_ns))
-            if measurement.is_keyframe:
-                self._timeline.add(Keyframe(measurement.t_ns))
         if isinstance(measurement, ImuSample):
             self._free.add(measurement)
             self._catch_up()

@@ -1,19 +1,27 @@
-"""What a picture says of the filter's state: how far its camera has turned since a held one, and which way it went."""
+"""The camera: holds the poses of its pictures, follows features from one to the next, and corrects by what they say together."""
 
-from math import hypot
+from math import sqrt
 
 import numpy as np
 
-from tracker.geometry import log, wxyz_from_matrix
-from tracker.measurements import Vector3, VisualMotion
-from tracker.precise import observations
+from tracker.measurements import Matrix, Vector3, VisualMotion
+from tracker.precise import parallax
+from tracker.precise.error_model import SIZE
 from tracker.precise.error_state import Correction, ErrorState
+from tracker.precise.hypotheses import Hypotheses
 from tracker.precise.settings import PreciseSettings
+from tracker.precise.tracks import Tracks, seen_in
 from tracker.rig import Rig
+
+#: Fewer pictures of a feature say nothing that its unknown place could not explain.
+_LEAST_PICTURES = 3
+#: How well features can be followed through these pictures is learned: so much of each new one's misfit, up to so many times
+#: the variance that is believed. Blur, a rolling shutter and a stamp that is off all look like that.
+_LEARNED, _WORST = 0.1, 25.0
 
 
 class Eye:
-    """The camera on its rig, and how far its motions are believed."""
+    """The camera on its rig."""
 
     def __init__(self, settings: PreciseSettings, rig: Rig) -> None:
         self._settings = settings
@@ -21,37 +29,60 @@ class Eye:
         x, y, z = rig.T_body_cam[:3, 3].tolist()
         self.lever_m: Vector3 = (x, y, z)
         """Where the camera is in the body, m."""
+        self._sigma = settings.feature_px / rig.camera.fx_px if rig.camera is not None else 0.0
+        self._misfit = 1.0
+        self._tracks = Tracks(settings.feature_pictures)
 
     def ray_body(self, ray_cam: Vector3) -> Vector3:
         """Return a direction in the body's axes."""
         x, y, z = (self._R_body_cam @ np.array(ray_cam)).tolist()
         return (x, y, z)
 
-    def rotation(self, filter_: ErrorState, motion: VisualMotion) -> Correction | None:
-        """Take in the turn since the held picture; None where that is not held."""
-        index = _index_of(filter_, motion.t_key_ns)
-        if index is None:
-            return None
-        settings, parallax_px = self._settings, motion.parallax_px
-        doubt = settings.vision_mixed * parallax_px / (1.0 + (parallax_px / 2.0) ** 2)
-        turned_rad = hypot(*log(wxyz_from_matrix(motion.R_key_cam)))
-        sigma = hypot(settings.vision_rotation_rad * (1.0 + doubt), settings.vision_scale * turned_rad)
-        seen = observations.rotation_to_clone(filter_, index, motion.R_key_cam, self._R_body_cam)
-        return filter_.correct(*seen, sigma**2 * np.eye(3))
+    def hold(self, hypotheses: Hypotheses, t_ns: int) -> None:
+        """Hold the pose of a picture that was taken now, against which later ones are measured, unless north is open."""
+        filter_ = hypotheses.best
+        if not hypotheses.are_many and all(clone.t_ns != t_ns for clone in filter_.clones):
+            filter_.hold(self._settings.feature_pictures + 1)
 
-    def direction(self, filter_: ErrorState, motion: VisualMotion) -> Correction | None:
-        """Take in the direction of travel; None where the picture is not held, or the state has hardly moved from it."""
-        index = _index_of(filter_, motion.t_key_ns)
-        if index is None:
-            return None
-        seen = observations.direction_from_clone(filter_, index, motion.direction_key, self._R_body_cam, self.lever_m)
-        if seen is None:
-            return None
-        settings = self._settings
-        sigma = max(settings.vision_direction_rad, settings.vision_point_px / max(motion.parallax_px, 0.1))
-        sigma = hypot(sigma, *seen[0].tolist())  # points that are mismatched agree on anything
-        return filter_.correct(*seen, sigma**2 * np.eye(2))
+    def take(self, hypotheses: Hypotheses, motion: VisualMotion) -> None:
+        """Take in what the features say that were lost with this picture, or have been seen for long enough.
 
+        As long as north is open nothing is taken: features cannot tell it, and slopes at poses that are turned by who knows how
+        much would seem to.
+        """
+        if motion.tracks is None or hypotheses.are_many:
+            return
+        is_held = any(clone.t_ns == motion.t_key_ns for clone in hypotheses.best.clones)
+        self.hold(hypotheses, motion.t_ns)
+        xy = self._tracks.take(motion.tracks, motion.t_key_ns, motion.t_ns, is_held=is_held)
+        if len(xy):
+            hypotheses.correct(lambda f: self._constrain(f, xy))
+        self._tracks.forget_oldest()
 
-def _index_of(filter_: ErrorState, t_ns: int) -> int | None:
-    return next((i for i, clone in enumerate(filter_.clones) if clone.t_ns == t_ns), None)
+    def _constrain(self, filter_: ErrorState, xy: Matrix) -> Correction | None:
+        """Correct by features, (M, K, 2) in the pictures of the tracks; None where they say nothing."""
+        held = {clone.t_ns: index for index, clone in enumerate(filter_.clones)}
+        stamps = self._tracks.stamps
+        there = [k for k, t_ns in enumerate(stamps) if t_ns in held]
+        at = [held[stamps[k]] for k in there]
+        xy = xy[:, there]
+        xy = xy[seen_in(xy).sum(axis=1) >= _LEAST_PICTURES]
+        if len(xy) == 0:
+            return None
+        filter_.settle()
+        rows = SIZE + (6 * np.array(at)[:, None] + np.arange(6)).ravel()
+        covariance = filter_.covariance[np.ix_(rows, rows)]
+        sigma = sqrt(self._misfit) * self._sigma
+        said = parallax.constraint(self._cameras(filter_, at), xy, sigma, covariance, self._settings.gate_nis)
+        self._misfit += _LEARNED * (min(max(1.0, self._misfit * said.misfit), _WORST) - self._misfit)
+        if len(said.residual) == 0:
+            return None
+        blocks = [(slice(SIZE + 6 * i, SIZE + 6 * i + 6), said.H[:, 6 * k : 6 * k + 6]) for k, i in enumerate(at)]
+        return filter_.correct(said.residual, blocks, np.eye(len(said.residual)), is_relative=True)
+
+    def _cameras(self, filter_: ErrorState, at: list[int]) -> parallax.Cameras:
+        clones = [filter_.clones[index] for index in at]
+        R_site_body = np.array([clone.R_site_body for clone in clones])
+        lever_m = R_site_body @ np.array(self.lever_m)
+        p_m = np.array([clone.p_m for clone in clones]) + lever_m
+        return parallax.Cameras(R_site_body @ self._R_body_cam, p_m, lever_m)

@@ -7,14 +7,12 @@ from math import atan2, hypot
 
 import numpy as np
 
-from tracker.geometry import log, rotate, wrap_rad, wxyz_from_matrix
+from tracker.geometry import rotate, wrap_rad
 from tracker.measurements import Matrix, Vector3
-from tracker.precise.error_model import BG, GPS_ERROR, MAGNETIC, SIZE, THETA, P, V, skew
+from tracker.precise.error_model import BG, GPS_ERROR, MAGNETIC, THETA, P, V, skew
 from tracker.precise.error_state import ErrorState, Observation
 
 _I3 = np.eye(3)
-#: Where the body is nearer than this to a held picture, the direction between them is noise.
-LEAST_BASELINE_M = 0.05
 
 
 def gps_position(state: ErrorState, p_site_m: Vector3, sigma_m: Vector3, lever_body_m: Vector3) -> Observation:
@@ -79,43 +77,6 @@ def bearing(state: ErrorState, landmark_site_m: Vector3, direction_body: Vector3
     return across @ (sight - seen), [
         (P, by_position),
         (THETA, -across @ skew(seen) - by_position @ skew(lever)),
-    ]
-
-
-def rotation_to_clone(state: ErrorState, index: int, R_key_cam: Matrix, R_body_cam: Matrix) -> Observation:
-    """The rotation between a held picture and the present one, in the held camera's axes."""
-    clone = state.clones[index]
-    C = (clone.R_site_body @ R_body_cam).T
-    predicted = C @ state.R_site_body @ R_body_cam
-    residual = np.array(log(wxyz_from_matrix(R_key_cam @ predicted.T)))
-    at = SIZE + 6 * index
-    return residual, [(THETA, C), (slice(at + 3, at + 6), -C)]
-
-
-def direction_from_clone(
-    state: ErrorState, index: int, direction_key: Vector3, R_body_cam: Matrix, lever_body_m: Vector3
-) -> Observation | None:
-    """The direction of travel since a held picture; None where the state has hardly moved."""
-    clone = state.clones[index]
-    C = (clone.R_site_body @ R_body_cam).T
-    lever = np.array(rotate(state.nav.wxyz_site_body, lever_body_m))
-    lever_key = clone.R_site_body @ np.array(lever_body_m)
-    base = np.array(state.nav.p_m) + lever - clone.p_m - lever_key
-    length_m = float(np.linalg.norm(base))
-    if length_m < LEAST_BASELINE_M:
-        return None
-    travel = C @ base / length_m
-    across = tangents(travel)
-    seen = np.array(direction_key)
-    if float(seen @ travel) < 0.0:
-        return None
-    by_base = across @ C / length_m
-    at = SIZE + 6 * index
-    return across @ (seen - travel), [
-        (P, by_base),
-        (THETA, -by_base @ skew(lever)),
-        (slice(at, at + 3), -by_base),
-        (slice(at + 3, at + 6), by_base @ (skew(lever_key) + skew(base))),
     ]
 
 

@@ -17,6 +17,7 @@ from tracker.measurements import (
     Sighting,
     Standpoint,
     VisualMotion,
+    VisualTracks,
 )
 
 #: A stamp that is ahead of its arrival by more than this is a clock that leapt.
@@ -25,6 +26,8 @@ _FASTEST_CLOCK_NS = 2_000_000_000
 _FASTEST_TURN_RAD_S, _LARGEST_FORCE_M_S2 = 50.0, 400.0
 #: Nobody walks above this, m above the ellipsoid, nor stands this far from the site's origin.
 _HIGHEST_M, _FARTHEST_M = 20_000.0, 1e6
+#: A front end follows a few hundred features, and a lens that sees a ray further aside than this has no plane before it.
+_MOST_FEATURES, _WIDEST_RAY = 1000, 20.0
 #: Who is no surer than this has told nothing.
 _LEAST_SURE_M, _LEAST_SURE_RAD = 1_000.0, 1.0
 #: The Earth's field is 25 to 65 microtesla; a magnet beside the sensor shows more, a dead sensor less.
@@ -111,4 +114,13 @@ def _of_vision(motion: VisualMotion) -> Outcome | None:
         return refused
     is_rotation = np.abs(R).max() <= 2.0 and np.abs(R @ R.T - np.eye(3)).max() <= _UNIT and np.linalg.det(R) > 0.0
     is_direction = length == 0.0 or abs(length - 1.0) <= _UNIT
-    return None if is_rotation and is_direction else Outcome.REJECTED_GATE
+    are_features = motion.tracks is None or _are_features(motion.tracks)
+    return None if is_rotation and is_direction and are_features else Outcome.REJECTED_GATE
+
+
+def _are_features(tracks: VisualTracks) -> bool:
+    count = len(tracks.ids)
+    rays = np.column_stack([tracks.xy_key, tracks.xy]) if tracks.xy_key.shape == tracks.xy.shape == (count, 2) else None
+    if rays is None or count > _MOST_FEATURES or len(np.unique(tracks.ids)) < count:
+        return False
+    return bool(np.all(np.abs(rays) < _WIDEST_RAY))

@@ -69,17 +69,10 @@ class PreciseSettings:
     """How well the height of the eyes above the ground is known,"""
     eye_height_repeats: float = 8.0
     """and how many times it says the same in a quarter of a second each: its error does not average out."""
-    vision_rotation_rad: float = 0.004
-    """Of a picture against a held one. Those of one held picture share its error: each counts for less than it is worth."""
-    vision_scale: float = 0.05
-    """Of a rotation, as its share: what the focal length may be off by."""
-    vision_mixed: float = 6.0
-    """How much worse it is, per pixel, where a parallax of about two pixels leaves open what is turn and what is travel: beside
-    a wall a share of the travel is taken for a turn, always the same way."""
-    vision_direction_rad: float = 0.02
-    """Of a direction of travel, at best;"""
-    vision_point_px: float = 0.15
-    """and this by the parallax in pixels, where that is worse. The further off one is the less it counts: a few are wrong."""
+    feature_px: float = 0.7
+    """Error of a feature in a picture, at best (drawn pictures: 0.25)."""
+    feature_pictures: int = 8
+    """A feature is followed over so many held pictures at most, and then has told what it can."""
     blend_s: float = 2.2
     """A correction moves what is shown with this time constant: a temple that jumps is worse than one that is off."""
     blend_turn_s: float = 0.6

@@ -16,6 +16,7 @@ from tracker.measurements import (
     Sighting,
     Standpoint,
     VisualMotion,
+    VisualTracks,
 )
 
 S = 1_000_000_000
@@ -33,10 +34,16 @@ def sane(t_ns: int) -> dict[str, Measurement]:
         "velocity": GpsVelocity(t_ns, t_ns, (0.5, 0.5, 0.0)),
         "field": MagSample(t_ns, t_ns, (2e-5, 1e-5, -3e-5)),
         "compass": CompassHeading(t_ns, t_ns, 0.3),
-        "vision": VisualMotion(t_ns, t_ns, 9, t_ns - S // 4, np.eye(3), (0.0, 0.6, 0.8), 80, 9.0, True),
+        "vision": VisualMotion(t_ns, t_ns, 9, t_ns - S // 4, np.eye(3), (0.0, 0.6, 0.8), 80, 9.0, True, features()),
         "sighting": Sighting(t_ns, t_ns, (10.0, 5.0, 2.0), (0.0, 0.0, 1.0), 0.01),
         "standpoint": Standpoint(t_ns, t_ns, (1.0, 2.0, 1.65), 0.2),
     }
+
+
+def features(count: int = 20) -> VisualTracks:
+    """Return features that nothing is wrong with."""
+    rays = np.linspace(-0.5, 0.5, 4 * count, dtype=np.float32).reshape(count, 4)
+    return VisualTracks(np.arange(count), rays[:, :2], rays[:, 2:])
 
 
 def refused(t_ns: int) -> list[Case]:
@@ -117,6 +124,16 @@ def _of_compass(field: MagSample, compass: CompassHeading) -> list[Case]:
     ]
 
 
+def _no_features() -> list[VisualTracks]:
+    """Return too many, the same one twice, rays of others, one that is not finite, and one behind the camera."""
+    good, behind = features(), features()
+    behind.xy[3, 0] = 1e30
+    broken = features()
+    broken.xy_key[0, 1] = nan
+    twice = replace(good, ids=np.zeros(len(good.ids), np.int64))
+    return [features(2000), twice, replace(good, ids=good.ids[1:]), replace(good, xy=good.xy[:, :1]), broken, behind]
+
+
 def _of_vision(vision: VisualMotion) -> list[Case]:
     mirror = np.diag([1.0, 1.0, -1.0])
     return [
@@ -131,6 +148,7 @@ def _of_vision(vision: VisualMotion) -> list[Case]:
         (replace(vision, parallax_px=nan), NOT_FINITE),
         (replace(vision, parallax_px=-1.0), GATE),
         (replace(vision, t_key_ns=vision.t_ns), GATE),
+        *((replace(vision, tracks=tracks), GATE) for tracks in _no_features()),
         (replace(vision, t_key_ns=10**400), GATE),
     ]
 

@@ -5,18 +5,20 @@ from functools import cache
 
 import numpy as np
 
+from tests.tracker.precise.points import seen_from
 from tracker.estimator import Pose
 from tracker.geometry import exp, matrix_from_wxyz
-from tracker.measurements import Measurement, Sighting, Standpoint, TruePose, VisualMotion
+from tracker.measurements import Measurement, Sighting, Standpoint, TruePose, VisualMotion, VisualTracks
 from tracker.precise.compass import Compass
 from tracker.precise.estimator import PreciseEstimator
 from tracker.precise.ground import EyeHeight
 from tracker.precise.memory import Memory
+from tracker.precise.tracks import seen_in
 from tracker.simulate import AGORA_ORIGIN, START_NS, Walk, WalkSettings, default_rig, simulate
 
 S = 1_000_000_000
 NAMES = ("gps-imu/precise", "camera-gps-imu/precise")
-_CAMERA_HZ, _KEY_EVERY = 8.0, 3
+_CAMERA_HZ, _KEY_EVERY, _POINTS = 8.0, 3, 600
 
 
 def estimator(
@@ -50,20 +52,24 @@ def stream(seconds: float = 45.0, seed: int = 12) -> tuple[Measurement, ...]:
 
 
 def _seen(of: Walk) -> Iterator[VisualMotion]:
-    """Yield the camera's motions against every third picture, with a little noise."""
+    """Yield the camera's motions against every third picture, with a little noise, and the features of these."""
     rng, times = np.random.default_rng(of.settings.seed), of.stamps(_CAMERA_HZ).tolist()
+    points_m = np.column_stack([rng.uniform(-60.0, 60.0, (_POINTS, 2)), rng.uniform(0.0, 8.0, _POINTS)])
     for index in range(1, len(times)):
         t_ns, t_key_ns = times[index], times[(index - 1) // _KEY_EVERY * _KEY_EVERY]
-        T_key_cam = np.linalg.inv(of.T_site_cam(t_key_ns)) @ of.T_site_cam(t_ns)
+        T_site_cam = np.stack([of.T_site_cam(t_key_ns), of.T_site_cam(t_ns)])
+        T_key_cam = np.linalg.inv(T_site_cam[0]) @ T_site_cam[1]
         base = T_key_cam[:3, 3] + rng.normal(0.0, 0.003, 3)
         a, b, c = rng.normal(0.0, 0.002, 3).tolist()
         R_key_cam = T_key_cam[:3, :3] @ matrix_from_wxyz(exp((a, b, c)))
         far = float(np.linalg.norm(base)) > 0.1
         x, y, z = (base / np.linalg.norm(base)).tolist() if far else (0.0, 0.0, 0.0)
-        is_key = index % _KEY_EVERY == 0
-        yield VisualMotion(
-            t_ns, t_ns + 38_000_000, index, t_key_ns, R_key_cam, (x, y, z), 90, 9.0 if far else 1.0, is_key
-        )
+        is_key, xy = index % _KEY_EVERY == 0, seen_from(T_site_cam[:, :3, :3], T_site_cam[:, :3, 3], points_m)
+        ids = np.flatnonzero(seen_in(xy).all(axis=1))
+        rays = (xy[ids] + rng.normal(0.0, 0.001, (len(ids), 2, 2))).astype(np.float32)
+        tracks = VisualTracks(ids, rays[:, 0], rays[:, 1]) if is_key else None
+        arrived_ns, parallax_px = t_ns + 38_000_000, 9.0 if far else 1.0
+        yield VisualMotion(t_ns, arrived_ns, index, t_key_ns, R_key_cam, (x, y, z), 90, parallax_px, is_key, tracks)
 
 
 def _said(of: Walk) -> Iterator[Measurement]:

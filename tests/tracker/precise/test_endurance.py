@@ -18,7 +18,7 @@ def test_a_hundred_thousand_samples_of_everything() -> None:
     assert len(seen) == 100
     assert max(one.asymmetry for one in seen) < 1e-12
     assert min(one.least_eigenvalue for one in seen) > 0.0
-    assert {len(one.sigmas) for one in seen} >= {SIZE + 6, SIZE + 12}, "pictures were held, and forgotten"
+    assert {len(one.sigmas) for one in seen} >= {SIZE + 18, SIZE + 24}, "pictures were held, and forgotten"
     assert max(one.sigmas[P].max() for one in seen) < 100.0
 
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from tracker.geometry import conjugate, exp, log, multiply, normalise, wxyz_from_yaw
-from tracker.measurements import Vector3
+from tracker.measurements import Matrix, Vector3
 from tracker.precise import observations
-from tracker.precise.error_model import BA, BG, SIZE, THETA, P, V, inertial_transition, start_covariance
+from tracker.precise.error_model import BA, BG, SIZE, THETA, P, V, inertial_transition, skew, start_covariance
 from tracker.precise.error_state import ErrorState
 from tracker.precise.navigation import Biases, Navigation, advance, carried
 from tracker.precise.settings import PreciseSettings
@@ -54,6 +54,32 @@ def test_transition_is_the_derivative_of_the_integral() -> None:
         moved.move(error)
         numeric = np.array(_difference(end, _advanced(moved.nav, moved.biases))) / 1e-5
         assert Phi[:9, column] == pytest.approx(numeric, abs=2e-3 if column >= 6 else 1e-6), column
+
+
+def test_what_is_relative_tells_nobody_which_way_all_of_it_lies() -> None:
+    """Of a turn of everything about any place as much is known after such a correction as before it."""
+    rng, state = np.random.default_rng(3), _state()
+    for _ in range(2):
+        state.hold(2)
+        state.covariance += np.diag(rng.uniform(0.05, 0.1, len(state.covariance)))
+    H, as_one = rng.normal(size=(5, len(state.covariance))), _as_one(state)
+    H -= H @ as_one @ np.linalg.pinv(as_one)
+    before = as_one.T @ np.linalg.solve(state.covariance, as_one)
+    state.correct(rng.normal(size=5), [(slice(0, H.shape[1]), H)], 0.1 * np.eye(5), gated=False, is_relative=True)
+    assert np.abs(_as_one(state) - as_one).max() > 0.1
+    after = _as_one(state).T @ np.linalg.solve(state.covariance, _as_one(state))
+    assert after == pytest.approx(before, abs=1e-9 * np.abs(before).max())
+
+
+def _as_one(state: ErrorState) -> Matrix:
+    """Return what the error is when everything is turned by a little about the origin, (n, 3)."""
+    turn = np.zeros((len(state.covariance), 3))
+    turn[THETA] = np.eye(3)
+    turn[P], turn[V] = -skew(state.nav.p_m), -skew(state.nav.v_m_s)
+    for k, clone in enumerate(state.clones):
+        at = SIZE + 6 * k
+        turn[at : at + 3], turn[at + 3 : at + 6] = -skew(clone.p_m), np.eye(3)
+    return turn
 
 
 def test_a_free_integral_carries_any_state_exactly() -> None:
