@@ -48,27 +48,28 @@ class BoardVideo:
 
     @cached_property
     def _rays(self) -> Matrix:
-        """Rays of all finer pixels, (H, W, 2)."""
+        """Rays of all finer pixels, (2, H, W), single as OpenCV wants them."""
         width, height = self.camera.width_px * _FINER, self.camera.height_px * _FINER
         u, v = np.meshgrid((np.arange(width) + 0.5) / _FINER - 0.5, (np.arange(height) + 0.5) / _FINER - 0.5)
         rays = lens.unproject(self.camera, np.column_stack([u.ravel(), v.ravel()]))
-        return rays.reshape(height, width, 2)
+        return np.ascontiguousarray(rays.T.reshape(2, height, width), np.float32)
 
     def picture(self, R_cam_board: Matrix, p_cam_board_m: Matrix, number: int = 0) -> Image:
         """Return what the camera sees, grey."""
         # a ray x, y, 1 meets the plane where H (u, v, 1) ~ (x, y, 1)
-        H = np.linalg.inv(np.column_stack([R_cam_board[:, 0], R_cam_board[:, 1], p_cam_board_m]))
-        x, y = self._rays[..., 0], self._rays[..., 1]
+        H = np.linalg.inv(np.column_stack([R_cam_board[:, 0], R_cam_board[:, 1], p_cam_board_m])).astype(np.float32)
+        x, y = self._rays
         w = H[2, 0] * x + H[2, 1] * y + H[2, 2]
         px_per_m = CELLS * CELL_PX / self.board.square_m
         margin = CELLS * CELL_PX - 0.5
-        u = (H[0, 0] * x + H[0, 1] * y + H[0, 2]) / w * px_per_m + margin
-        v = (H[1, 0] * x + H[1, 1] * y + H[1, 2]) / w * px_per_m + margin
+        with np.errstate(divide="ignore"):  # a ray along the board meets it nowhere
+            u = (H[0, 0] * x + H[0, 1] * y + H[0, 2]) / w * px_per_m + margin
+            v = (H[1, 0] * x + H[1, 1] * y + H[1, 2]) / w * px_per_m + margin
         wall = 90
         drawn = cv2.remap(
             self._texture,
-            u.astype(np.float32),
-            v.astype(np.float32),
+            u,
+            v,
             cv2.INTER_LINEAR,
             borderMode=cv2.BORDER_CONSTANT,
             borderValue=(wall,),
