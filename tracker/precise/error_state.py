@@ -284,6 +284,8 @@ class ErrorState:
     def place(self, p_site_m: Vector3, *, forget_receiver: bool = True) -> None:
         """Begin anew at a position of which nothing is known yet; what is known of velocity and attitude stays."""
         self.settle()
+        while self.clones:  # they are where nobody believes to have been any more
+            self.forget(0)
         cov = self.covariance
         cov[P, :] = 0.0
         cov[:, P] = 0.0
