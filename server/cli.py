@@ -58,8 +58,8 @@ app.command()(doctor)
 app.command()(simulate)
 app.command()(export)
 app.add_typer(calibrate, name="calibrate")
-out = Console(highlight=False)
-err = Console(stderr=True, highlight=False)
+out = Console(highlight=False, emoji=False)
+err = Console(stderr=True, highlight=False, emoji=False)
 
 LogFile = Annotated[Path, typer.Argument(help="A walk: a ROS 2 bag in one MCAP file.", metavar="LOG")]
 
@@ -186,7 +186,7 @@ def evaluate(
 
         page = write_report(report_of(evaluation, traces, place), report)
         err.print(f"agora: the report is {page}", soft_wrap=True)
-    wide = out if out.is_terminal else Console(highlight=False, width=170)
+    wide = out if out.is_terminal else Console(highlight=False, emoji=False, width=170)
     print_table(evaluation, wide)
 
 

@@ -53,7 +53,7 @@ AsJson = Annotated[bool, typer.Option("--json", help="A line of JSON each second
 if TYPE_CHECKING:
     from server.walking import Walking
 
-out = Console(highlight=False)
+out = Console(highlight=False, emoji=False)
 
 
 def walk(

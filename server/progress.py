@@ -17,5 +17,5 @@ def progress_bar(what: str) -> Iterator[Progress]:
         TaskProgressColumn(),
         TimeRemainingColumn(),
     )
-    with Progress(*columns, console=Console(stderr=True, highlight=False), transient=True) as bar:
+    with Progress(*columns, console=Console(stderr=True, highlight=False, emoji=False), transient=True) as bar:
         yield bar

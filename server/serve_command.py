@@ -10,7 +10,7 @@ from rich.console import Console
 
 from server.options import SITE, WEB, require_built, site_with, stop_asked
 
-out = Console(highlight=False)
+out = Console(highlight=False, emoji=False)
 
 
 def serve(

@@ -66,4 +66,4 @@ def simulate(
             progress=lambda done: bar.update(task, completed=done),
             pointed=lambda walk: pointed_out(walk, DEMO_POINTINGS if plan == "demo" else (), place.landmarks),
         )
-    Console(highlight=False).print(f"{log}: {settings.duration_s:.0f} s, {size / 1e6:.1f} MB")
+    Console(highlight=False, emoji=False).print(f"{log}: {settings.duration_s:.0f} s, {size / 1e6:.1f} MB")

@@ -26,8 +26,8 @@ calibrate = typer.Typer(
     no_args_is_help=True,
     help="Find out how a rig's sensors err: the lens, how the camera sits and ticks, biases, and the rig's own iron.",
 )
-out = Console(highlight=False)
-err = Console(stderr=True, highlight=False)
+out = Console(highlight=False, emoji=False)
+err = Console(stderr=True, highlight=False, emoji=False)
 
 RecordedLog = Annotated[
     Path | None, typer.Option("--log", help="A recording, instead of live sensors.", metavar="FILE")

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from tracker.rig_file import RigFile
     from tracker.sources.source import Source
 
-out = Console(highlight=False)
-err = Console(stderr=True, highlight=False)
+out = Console(highlight=False, emoji=False)
+err = Console(stderr=True, highlight=False, emoji=False)
 
 #: A word in the names of the Phidgets that are a receiver and an inertial unit.
 _PHIDGETS = {"gps": "GPS", "imu": "Spatial", "camera": "no camera"}

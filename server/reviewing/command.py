@@ -46,7 +46,7 @@ def export(
     place, walk = load_site(site), Log.open(log)
     models = place.folder / "built"
     exporter = Exporter(WEB, models, place.folder, site_facts(place, models))
-    with Console(stderr=True, highlight=False).status(f"packing {walk.name}"):
+    with Console(stderr=True, highlight=False, emoji=False).status(f"packing {walk.name}"):
         room = exporter.left_for_frames(max_mb)
         pack = packed(walk, PackJob(str(log), str(place.folder), estimator, anchor, pictures, room))
         course = thumbnails = None
@@ -59,4 +59,6 @@ def export(
         page.write_text(text, encoding="utf-8")
     except OSError as exc:
         raise InputError(f"{page} cannot be written: {exc.strerror}.") from exc
-    Console(highlight=False).print(f"{page}: {walk.info.duration_s:.0f} s, {len(text) / 1e6:.1f} MB", soft_wrap=True)
+    Console(highlight=False, emoji=False).print(
+        f"{page}: {walk.info.duration_s:.0f} s, {len(text) / 1e6:.1f} MB", soft_wrap=True
+    )

@@ -15,7 +15,10 @@ from pathlib import Path
 import httpx
 import pytest
 
+from server import cli, live_commands, serve_command
+from server.calibrating import commands as calibrating
 from server.cli import SITE
+from server.doctor import command as doctor
 from tests.server.command import agora_here
 from tests.server.serving import until
 from tests.walks import write_walk
@@ -148,6 +151,13 @@ def test_a_folder_that_cannot_be_written_is_one_sentence(walk: Path, tmp_path: P
         result = agora_here(*arguments)
         assert result.returncode == 2
         is_one_sentence(result.stderr, "file", "written")
+
+
+def test_what_is_said_is_said_as_it_is(tmp_path: Path) -> None:
+    """Two letters between colons are no picture: certificates have them in their fingerprints, files in their names."""
+    is_one_sentence(agora_here("replay", tmp_path / "F7:AB:86.mcap").stderr, "F7:AB:86.mcap")
+    for said_by in (cli, calibrating, doctor, live_commands, serve_command):
+        assert said_by.out.render_str("F7:AB:86").plain == "F7:AB:86"
 
 
 def test_no_command_waits_for_what_only_others_need() -> None:
