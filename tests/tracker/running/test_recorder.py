@@ -96,8 +96,9 @@ def test_a_kill_loses_at_most_the_last_second(tmp_path: Path) -> None:
         try:
             assert rig_.stdout is not None
             t_ns = first_ns = int(rig_.stdout.readline())
-            while t_ns < first_ns + 2 * S:
-                t_ns = int(rig_.stdout.readline())
+            told = 1
+            while t_ns < first_ns + 2 * S or told < 500:  # a machine with other work takes longer for as many
+                t_ns, told = int(rig_.stdout.readline()), told + 1
             rig_.send_signal(signal.SIGKILL)
             t_last_ns = max([t_ns, *(int(line) for line in rig_.stdout)])
         finally:
