@@ -55,7 +55,7 @@ def log(tmp_path_factory: pytest.TempPathFactory) -> Log:
     return Log.open(write_walk(tmp_path_factory.mktemp("logs") / "wall.mcap", 30.0, pictures=True))
 
 
-def until(condition: Callable[[], object], seconds: float = 15.0) -> None:
+def until(condition: Callable[[], object], seconds: float = 60.0) -> None:
     deadline = monotonic() + seconds
     while not condition():
         assert monotonic() < deadline, "waited in vain"

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 from time import monotonic_ns
 
-from tests.tracker.sources.listening import Listening
+from tests.tracker.sources.listening import PATIENCE_S, Listening
 from tests.tracker.sources.usb_standin.bus import GPS_1040, SPATIAL_1042, Bus, Vector3, nmea_reports, spatial_report
 from tests.tracker.sources.usb_standin.walker import GEOID_M, epoch_sentences
 from tracker.measurements import GpsFix, ImuSample, MagSample
@@ -72,9 +72,9 @@ class Rig:
             if wait_ns > 0:
                 time.sleep(wait_ns / 1e9)
 
-    def live_until(self, is_done: Callable[[], object], seconds: float = 20.0) -> None:
+    def live_until(self, is_done: Callable[[], object]) -> None:
         """Go on until something has happened."""
-        for _ in range(round(seconds * 50)):
+        for _ in range(round(PATIENCE_S * 50)):
             if is_done():
                 return
             errors = [listening.error for listening in self._listening if listening.error is not None]
@@ -84,7 +84,7 @@ class Rig:
             number: (self.bus.listened_to(number), self.bus.waiting(number)) for number in (self.gps, self.spatial)
         }
         raise AssertionError(
-            f"it has not happened in {seconds} s: listened to, and reports waiting, by device: {devices}"
+            f"it has not happened in {PATIENCE_S} s: listened to, and reports waiting, by device: {devices}"
         )
 
 
