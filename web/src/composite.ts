@@ -44,6 +44,7 @@ export class Composite {
   gain: readonly [number, number, number] = [1, 1, 1];
   /** How the model is laid over the next picture. */
   laying: Laying = SOLID;
+  private readonly anisotropy: number;
   private readonly drawing: Drawing;
   private readonly sheet: Sheet;
   private square: Square | null = null;
@@ -71,6 +72,7 @@ export class Composite {
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.autoUpdate = false;
     this.renderer.info.autoReset = false;
+    this.anisotropy = anisotropyFor(this.renderer);
     this.drawing = new Drawing(this.renderer);
     this.sheet = new Sheet(this.drawing);
     this.renderer.setClearColor(new Color(0x0b0a08), 1);
@@ -84,7 +86,7 @@ export class Composite {
   /** Draw this square from now on. */
   show(square: Square): void {
     this.square = square;
-    square.anisotropy = anisotropyFor(this.renderer);
+    square.anisotropy = this.anisotropy;
     square.changed = () => {
       this.renderer.shadowMap.needsUpdate = true;
       this.redraw();

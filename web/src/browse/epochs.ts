@@ -87,7 +87,7 @@ export class Epochs {
   /** Tint everything by how well it is known, or no longer. */
   tint(on: boolean): void {
     this.evidence = on;
-    for (const square of this.squares.values()) square.showEvidence(on);
+    for (const square of this.squares.values()) void this.stage.redress(square, () => square.showEvidence(on));
   }
 
   /** Show another reconstruction of a monument. */

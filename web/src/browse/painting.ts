@@ -2,6 +2,7 @@
 
 import { type PerspectiveCamera, Vector4, type WebGLRenderer } from "three";
 import type { Square } from "../model";
+import type { Readying } from "../readying";
 import type { Sky } from "../sky";
 import { Guests } from "./guests";
 import { Still } from "./still";
@@ -37,6 +38,11 @@ export class Painting {
     private readonly renderer: WebGLRenderer,
     private readonly camera: PerspectiveCamera,
   ) {}
+
+  /** Compile what is not drawn with yet, but may be soon. */
+  async ready(readying: Readying): Promise<void> {
+    for (const { scene, camera } of [this.still, this.veil]) await readying.compile(scene, camera);
+  }
 
   /** What stood still is no longer as it was. */
   forget(): void {

@@ -38,6 +38,7 @@ export class Stage implements World {
   private readonly readying: Readying;
   private readonly pace: Pace;
   private readonly inSoftware: boolean;
+  private readonly anisotropy: number;
   private below: Layer | null = null;
   private above: Layer | null = null;
   private share = 0;
@@ -75,6 +76,7 @@ export class Stage implements World {
     this.renderer.autoClear = false;
     this.renderer.debug.checkShaderErrors = import.meta.env.DEV; // to ask for errors waits for the compiler
     this.inSoftware = drawsInSoftware(this.renderer);
+    this.anisotropy = anisotropyFor(this.renderer); // to ask later would wait for all that is being drawn
     this.pace = new Pace(this.inSoftware);
     this.readying = new Readying(this.renderer);
     this.painting = new Painting(this.renderer, this.camera);
@@ -133,6 +135,18 @@ export class Stage implements World {
 
   get guests(): Group {
     return this.painting.guests.group;
+  }
+
+  /** Change how a square is drawn, and draw it so when that can be done without a halt. */
+  async redress(square: Square, change: () => void): Promise<void> {
+    const layer = this.layer(square);
+    this.isDressing = true;
+    change();
+    this.isDressing = false;
+    this.compiling += 1;
+    await this.compileBoth(layer);
+    this.compiling -= 1;
+    this.renew();
   }
 
   /** Light a square by a sun at this place of the sky. */
@@ -266,7 +280,7 @@ export class Stage implements World {
     square.scene.add(layer.sky.mesh);
     square.scene.fog = new Fog(0, ...FOG_M);
     (square.scene.fog as Fog).color = layer.sky.horizon;
-    square.anisotropy = anisotropyFor(this.renderer);
+    square.anisotropy = this.anisotropy;
     square.pause = (pictures) => this.pause(layer, pictures);
     square.changed = () => {
       if (this.isDressing) return;
@@ -353,16 +367,23 @@ export class Stage implements World {
     for (const layer of layers.filter(({ finest }) => finest === "no")) {
       layer.finest = "soon";
       this.compiling += 1;
-      this.dress(layer, false);
-      const done = this.compile(layer);
-      this.dress(layer, true);
-      void done.then(() => {
+      void this.compileBoth(layer).then(() => {
         layer.finest = "yes";
         this.compiling -= 1;
         this.ask();
       });
     }
     return layers.every(({ finest }) => finest === "yes");
+  }
+
+  /** Compile it as it is drawn while something moves, and as it rests. */
+  private async compileBoth(layer: Layer): Promise<void> {
+    const { plain } = layer;
+    const asNow = this.compile(layer);
+    this.dress(layer, !plain);
+    const asElse = this.compile(layer);
+    this.dress(layer, plain);
+    await Promise.all([asNow, asElse]);
   }
 
   /** Compile it as it is dressed now. */
@@ -391,6 +412,7 @@ export class Stage implements World {
     if (!above) painting.drawOne(below, this.guestsMove && !this.moves);
     else if (share > 0.5) painting.drawBoth(above, below, 1 - share, this.fineness);
     else painting.drawBoth(below, above, share, this.fineness);
+    if (this.pictures === 0) void painting.ready(this.readying);
     this.pictures += 1;
     for (const drawn of this.waiting.splice(0)) drawn();
   }

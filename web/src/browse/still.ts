@@ -35,8 +35,8 @@ const FRAGMENT = /* glsl */ `
 export class Still {
   private target: WebGLRenderTarget | null = null;
   private kept = false;
-  private readonly scene = new Scene();
-  private readonly camera = new OrthographicCamera();
+  readonly scene = new Scene();
+  readonly camera = new OrthographicCamera();
   private readonly material = new ShaderMaterial({
     uniforms: { picture: { value: null }, depth: { value: null } },
     vertexShader: VERTEX,

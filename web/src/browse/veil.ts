@@ -23,8 +23,8 @@ const FRAGMENT = /* glsl */ `
 
 export class Veil {
   private picture: FramebufferTexture | null = null;
-  private readonly scene = new Scene();
-  private readonly camera = new OrthographicCamera();
+  readonly scene = new Scene();
+  readonly camera = new OrthographicCamera();
   private readonly material = new ShaderMaterial({
     uniforms: { picture: { value: null }, share: { value: 1 }, part: { value: 1 } },
     vertexShader: VERTEX,
