@@ -160,6 +160,8 @@ def test_in_real_time_nothing_is_lost_and_samples_have_the_devices_times(rig: Ri
     with rig.listen(PhidgetSpatialSource()) as samples, rig.listen(PhidgetGpsSource()) as places:
         rig.live_until(lambda: imu(samples) and places.fixes)
         rig.live(SECONDS)
+        samples.wait(lambda: numbers(imu(samples)[-1:]) == [rig.samples_said[-1] % NUMBERS])
+        places.wait(lambda: epochs(places.fixes[-1:]) == [rig.epochs_said[-1]])
     found = imu(samples)
     assert len(found) > 250 * SECONDS - 10
     assert consecutive(numbers(found[5:]), NUMBERS)
