@@ -73,7 +73,7 @@ class Eye:
         rows = SIZE + (6 * np.array(at)[:, None] + np.arange(6)).ravel()
         covariance = filter_.covariance[np.ix_(rows, rows)]
         sigma = sqrt(self._misfit) * self._sigma
-        said = parallax.constraint(self._cameras(filter_, at), xy, sigma, covariance, self._settings.gate_nis)
+        said = parallax.constraint(self._cameras(filter_, at), xy, sigma, covariance, self._settings.feature_nis)
         self._misfit += _LEARNED * (min(max(1.0, self._misfit * said.misfit), _WORST) - self._misfit)
         if len(said.residual) == 0:
             return None

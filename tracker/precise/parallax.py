@@ -1,7 +1,8 @@
 """What features that were followed over several pictures say of the poses of these, their own places left out.
 
-A feature is a point in the camera of the first picture that shows it: x/z, y/z and 1/z, which is 0 for what is far away. How far it
-is nobody has measured, and something is known all the same: nothing on a square is nearer than an arm or farther than the hills.
+A feature is a point in the camera of the first picture that shows it: x/z, y/z and 1/z, which is 0 for what is far away. What is
+likely of 1/z finds a place for features that parallax leaves open, and says nothing of the poses: of a hundred features together it
+would be sure how fast the camera goes.
 
 Reference:
     Mourikis and Roumeliotis, A multi-state constraint Kalman filter for vision-aided inertial navigation, 2007.
@@ -17,7 +18,7 @@ from tracker.measurements import Matrix
 from tracker.precise.cross import cross_matrices
 from tracker.precise.tracks import seen_in
 
-#: Of 1/z, before anything was seen, 1/m.
+#: What is likely of 1/z, 1/m.
 INVERSE_DEPTH, INVERSE_DEPTH_SIGMA = 0.07, 0.2
 _NEAREST_INVERSE_M = 5.0
 #: Points nearer to the camera's plane than this, by their distance in the first picture, are behind it as far as can be told.
@@ -66,12 +67,14 @@ def constraint(cameras: Cameras, xy: Matrix, sigma: float, covariance: Matrix, g
     relative = _Relative.of(cameras, anchor)
     point = triangulate(relative, np.where(seen[..., None], xy, 0.0), seen, anchor, sigma)
     residual, by_point, by_pose = _linearised(cameras, relative, point, xy, seen, anchor)
-    residual, H = _without_points(point, residual / sigma, by_point / sigma, by_pose / sigma)
+    residual, H = _without_points(residual / sigma, by_point / sigma, by_pose / sigma)
     S = H @ covariance @ H.transpose(0, 2, 1) + np.eye(H.shape[1])
     squared = np.einsum("mi,mi->m", residual, np.linalg.solve(S, residual[..., None])[..., 0])
-    nis = squared / (2 * seen.sum(axis=1) - 2)
+    nis = squared / (2 * seen.sum(axis=1) - 3)
     good = nis < gate_nis
-    return Constraint(*_compressed(residual[good], H[good]), float(np.median(nis)))
+    weight = 1.0 / np.sqrt(1.0 + nis[good])  # Cauchy's: many slide a little, and by chance the same way
+    residual, H = weight[:, None] * residual[good], weight[:, None, None] * H[good]
+    return Constraint(*_compressed(residual, H), float(np.median(nis)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,17 +155,9 @@ def _linearised(
     )
 
 
-def _without_points(point: Matrix, residual: Matrix, by_point: Matrix, by_pose: Matrix) -> tuple[Matrix, Matrix]:
-    """Return residuals and slopes across all that the points could explain, of noise one as before.
-
-    What is known of 1/z without a picture is a row more.
-    """
-    count = len(point)
-    known = np.zeros((count, 1, 3))
-    known[:, 0, 2] = 1.0 / INVERSE_DEPTH_SIGMA
-    residual = np.column_stack([residual, (INVERSE_DEPTH - point[:, 2]) / INVERSE_DEPTH_SIGMA])
-    by_pose = np.concatenate([by_pose, np.zeros((count, 1, by_pose.shape[2]))], axis=1)
-    Q, _ = np.linalg.qr(np.concatenate([by_point, known], axis=1), mode="complete")
+def _without_points(residual: Matrix, by_point: Matrix, by_pose: Matrix) -> tuple[Matrix, Matrix]:
+    """Return residuals and slopes across all that the points could explain, of noise one as before."""
+    Q, _ = np.linalg.qr(by_point, mode="complete")
     across = Q[:, :, 3:].transpose(0, 2, 1)
     return (across @ residual[..., None])[..., 0], across @ by_pose
 

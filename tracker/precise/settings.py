@@ -71,6 +71,8 @@ class PreciseSettings:
     """and how many times it says the same in a quarter of a second each: its error does not average out."""
     feature_px: float = 0.7
     """Error of a feature in a picture, at best (drawn pictures: 0.25)."""
+    feature_nis: float = 3.0
+    """Per dimension: a feature that is further off slid along an outline, or moves by itself."""
     feature_pictures: int = 8
     """A feature is followed over so many held pictures at most, and then has told what it can."""
     blend_s: float = 2.2

@@ -64,14 +64,17 @@ def test_the_slope_is_that_of_the_residual(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_nobody_can_tell_where_all_of_it_is(seed: int) -> None:
-    """Cameras that are moved or turned as one see the same."""
+def test_nobody_can_tell_where_all_of_it_is_nor_how_large(seed: int) -> None:
+    """Cameras that are moved or turned as one see the same, and so do some that are as far apart again, of a world as large again."""
     R_site_body, p_m, xy = drawn(seed)
     said = constraint(cameras(R_site_body, p_m), xy, SIGMA, SURE, EVERYTHING)
     as_one = np.zeros((PICTURES, 6, 6))
     as_one[:, :, :] = np.eye(6)
     for k, (x, y, z) in enumerate(p_m):
         as_one[k, :3, 3:] = -np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    apart = np.zeros((PICTURES, 6))
+    apart[:, :3] = cameras(R_site_body, p_m).p_site_m - p_m[0]
+    assert np.abs(said.H @ apart.ravel()).max() < 1e-6 * np.abs(said.H).max()
     assert np.abs(said.H @ as_one.reshape(-1, 6)).max() < 1e-6 * np.abs(said.H).max()
 
 
