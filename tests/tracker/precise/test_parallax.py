@@ -65,7 +65,7 @@ def test_the_slope_is_that_of_the_residual(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(5))
 def test_nobody_can_tell_where_all_of_it_is_nor_how_large(seed: int) -> None:
-    """Cameras that are moved or turned as one see the same, and so do some that are twice as far apart, in a world twice as large."""
+    """Cameras moved or turned as one see the same, and so do some that are twice as far apart in a world twice as large."""
     R_site_body, p_m, xy = drawn(seed)
     said = constraint(cameras(R_site_body, p_m), xy, SIGMA, SURE, EVERYTHING)
     as_one = np.zeros((PICTURES, 6, 6))
