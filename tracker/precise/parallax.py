@@ -69,7 +69,7 @@ def constraint(cameras: Cameras, xy: Matrix, sigma: float, covariance: Matrix, g
     residual, by_point, by_pose = _linearised(cameras, relative, point, xy, seen, anchor)
     residual, H = _without_points(residual / sigma, by_point / sigma, by_pose / sigma)
     S = H @ covariance @ H.transpose(0, 2, 1) + np.eye(H.shape[1])
-    squared = np.einsum("mi,mi->m", residual, np.linalg.solve(S, residual[..., None])[..., 0])
+    squared = np.sum(residual * np.linalg.solve(S, residual[..., None])[..., 0], axis=1)
     nis = squared / (2 * seen.sum(axis=1) - 3)
     good = nis < gate_nis
     weight = 1.0 / np.sqrt(1.0 + nis[good])  # Cauchy's: many slide a little, and by chance the same way
@@ -89,12 +89,12 @@ class _Relative:
     @staticmethod
     def of(cameras: Cameras, anchor: NDArray[np.int64]) -> "_Relative":
         R, p = cameras.R_site_cam, cameras.p_site_m
-        R_cam_first = np.einsum("kji,mjl->mkil", R, R[anchor])
-        return _Relative(R_cam_first, np.einsum("kji,mkj->mki", R, p[anchor][:, None] - p))
+        R_cam_site = R.transpose(0, 2, 1)
+        return _Relative(R_cam_site @ R[anchor][:, None], _each(R_cam_site, p[anchor][:, None] - p))
 
     def rays(self, point: Matrix) -> tuple[Matrix, Matrix]:
         """Return where points are on each camera's plane, (M, K, 2), and their depth there by that in the first, (M, K)."""
-        h = np.einsum("mkil,ml->mki", self.R_cam_first, _on_plane(point)) + point[:, 2, None, None] * self.p_cam_first_m
+        h = _each(self.R_cam_first, _on_plane(point)[:, None]) + point[:, 2, None, None] * self.p_cam_first_m
         z = np.maximum(h[..., 2], _LEAST_Z)
         return h[..., :2] / z[..., None], z
 
@@ -107,7 +107,7 @@ def triangulate(
     prior = (sigma / INVERSE_DEPTH_SIGMA) ** 2
     point = np.column_stack([first, np.full(len(first), INVERSE_DEPTH)])
     # what is left open once the first ray holds is linear in 1/z
-    ahead, base = np.einsum("mkil,ml->mki", relative.R_cam_first, _on_plane(point)), relative.p_cam_first_m
+    ahead, base = _each(relative.R_cam_first, _on_plane(point)[:, None]), relative.p_cam_first_m
     slope = weight * (xy * base[..., 2:] - base[..., :2])
     offset = weight * (ahead[..., :2] - xy * ahead[..., 2:])
     inverse_m = (np.sum(slope * offset, axis=(1, 2)) + prior * INVERSE_DEPTH) / (np.sum(slope**2, axis=(1, 2)) + prior)
@@ -115,8 +115,9 @@ def triangulate(
     for _ in range(_STEPS):
         rays, z = relative.rays(point)
         by_point = weight[..., None] * _by_point(relative, rays, z)
-        normal = np.einsum("mkia,mkib->mab", by_point, by_point)
-        slope = np.einsum("mkia,mki->ma", by_point, weight * (xy - rays))
+        rows = by_point.reshape(len(xy), -1, 3)
+        normal = rows.transpose(0, 2, 1) @ rows
+        slope = _each(rows.transpose(0, 2, 1), (weight * (xy - rays)).reshape(len(xy), -1))
         normal[:, 2, 2] += prior
         slope[:, 2] += prior * (INVERSE_DEPTH - point[:, 2])
         point = point + np.linalg.solve(normal, slope[..., None])[..., 0]
@@ -139,7 +140,7 @@ def _linearised(
     by_point = np.where(seen[..., None, None], _by_point(relative, rays, z), 0.0)
     by_site = np.where(seen[..., None, None], _by_plane(rays, z) @ cameras.R_site_cam.transpose(0, 2, 1), 0.0)
     inverse_m, lever = point[:, 2, None, None, None], cross_matrices(cameras.lever_site_m)
-    to_first = np.einsum("mij,mj->mi", cameras.R_site_cam[anchor], _on_plane(point))
+    to_first = _each(cameras.R_site_cam[anchor], _on_plane(point))
     to = to_first[:, None] + point[:, 2, None, None] * (cameras.p_site_m[anchor][:, None] - cameras.p_site_m)
     own = np.concatenate([-inverse_m * by_site, by_site @ (cross_matrices(to) + inverse_m * lever)], axis=-1)
     turn_first = cross_matrices(to_first)[:, None] + inverse_m * lever[anchor][:, None]
@@ -159,16 +160,16 @@ def _without_points(residual: Matrix, by_point: Matrix, by_pose: Matrix) -> tupl
     """Return residuals and slopes across all that the points could explain, of noise one as before."""
     Q, _ = np.linalg.qr(by_point, mode="complete")
     across = Q[:, :, 3:].transpose(0, 2, 1)
-    return (across @ residual[..., None])[..., 0], across @ by_pose
+    return _each(across, residual), across @ by_pose
 
 
 def _compressed(residual: Matrix, H: Matrix) -> tuple[Matrix, Matrix]:
     """Return as few rows that say the same: no more than there are columns."""
-    information = np.einsum("mij,mik->jk", H, H)
-    found, axes = np.linalg.eigh(information)
+    H = H.reshape(-1, H.shape[-1])
+    found, axes = np.linalg.eigh(H.T @ H)
     kept = (found > _LEAST_SHARE * found[-1]) & (found > 0.0)
     root, axes = np.sqrt(found[kept]), axes[:, kept]
-    return (axes.T @ np.einsum("mij,mi->j", H, residual)) / root, root[:, None] * axes.T
+    return (axes.T @ (H.T @ residual.ravel())) / root, root[:, None] * axes.T
 
 
 def _by_point(relative: _Relative, rays: Matrix, z: Matrix) -> Matrix:
@@ -183,6 +184,11 @@ def _by_plane(rays: Matrix, z: Matrix) -> Matrix:
     slopes[..., 0, 0] = slopes[..., 1, 1] = 1.0
     slopes[..., 2] = -rays
     return slopes / z[..., None, None]
+
+
+def _each(matrices: Matrix, vectors: Matrix) -> Matrix:
+    """Return the product of each matrix with its vector."""
+    return np.asarray((matrices @ vectors[..., None])[..., 0])
 
 
 def _on_plane(point: Matrix) -> Matrix:
