@@ -134,7 +134,8 @@ def _beside(study: Figures) -> list[Block]:
     ceiling = study["summary"]["batch_is_a_ceiling"]
     caption = "A dot is a walk, a bar the median; ours are in colour, the dashed line is what is asked of them."
     text = "GTSAM's batch sees the whole walk at once, before and after: it is there to show how much the measurements hold."
-    void = " It does not beat every online estimator here, so the ratio to it is void."
+    text += " It has no camera, and the ratio to it is of those who have none either."
+    void = " It does not beat every online estimator without a camera here, so the ratio to it is void."
     return [
         Heading("Beside the others"),
         Text(text + (void if ceiling is False else "")),

@@ -40,7 +40,9 @@ def print_study(summary: Figures, console: Console) -> None:
     console.print(medians_table(summary["medians"]))
     console.print(goals_table(summary["goals"]))
     if summary["batch_is_a_ceiling"] is False:
-        console.print("The batch does not beat every online estimator: the ratio to it is void.", style="yellow")
+        console.print(
+            "The batch does not beat every online estimator without a camera: the ratio to it is void.", style="yellow"
+        )
 
 
 #: The same for the logs.
