@@ -163,6 +163,9 @@ class Engine:
         if counted:
             self._counted_ns = sample.t_ns
             self._look_after_gap(sample, in_gap)
+        if counted and self._eye.is_behind:
+            with self._heading_followed():
+                self._eye.go_on(self.hypotheses)
         if counted and not in_gap and self._activity.step(sample):
             with self._heading_followed():
                 self._cycle(sample.t_ns)

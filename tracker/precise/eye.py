@@ -15,6 +15,10 @@ from tracker.rig import Rig
 
 #: Fewer pictures of a feature say nothing that its unknown place could not explain.
 _LEAST_PICTURES = 3
+#: So many of them are taken at a time, those seen most often: what a head turn loses all at once would keep samples waiting.
+_MOST = 40
+#: For the same reason so many are taken with one inertial sample, the rest with those after it.
+_AT_ONCE = 14
 #: How well features can be followed through these pictures is learned: so much of each new one's misfit, up to so many times
 #: the variance that is believed. Blur, a rolling shutter and a stamp that is off all look like that.
 _LEARNED, _WORST = 0.1, 25.0
@@ -32,6 +36,9 @@ class Eye:
         self._sigma = settings.feature_px / rig.camera.fx_px if rig.camera is not None else 0.0
         self._misfit = 1.0
         self._tracks = Tracks(settings.feature_pictures)
+        self._left: Matrix = np.zeros((0, 0, 2))
+        """Features that have told all and are still to be taken, (M, K, 2) in the pictures of `_stamps`."""
+        self._stamps: list[int] = []
 
     def ray_body(self, ray_cam: Vector3) -> Vector3:
         """Return a direction in the body's axes."""
@@ -45,26 +52,39 @@ class Eye:
             filter_.hold(self._settings.feature_pictures + 1)
 
     def take(self, hypotheses: Hypotheses, motion: VisualMotion) -> None:
-        """Take in what the features say that were lost with this picture, or have been seen for long enough.
+        """Take note of the features that were lost with this picture, or have been seen for long enough.
 
         As long as north is open nothing is taken: features cannot tell it, and slopes at poses that are turned by who knows how
         much would seem to.
         """
         if motion.tracks is None or hypotheses.are_many:
             return
+        while self.is_behind:
+            self.go_on(hypotheses)
         is_held = any(clone.t_ns == motion.t_key_ns for clone in hypotheses.best.clones)
         self.hold(hypotheses, motion.t_ns)
         xy = self._tracks.take(motion.tracks, motion.t_key_ns, motion.t_ns, is_held=is_held)
-        if len(xy):
-            hypotheses.correct(lambda f: self._constrain(f, xy))
+        count = seen_in(xy).sum(axis=1)
+        often = np.argsort(-count, kind="stable")[:_MOST]
+        self._left, self._stamps = xy[often[count[often] >= _LEAST_PICTURES]], self._tracks.stamps
         self._tracks.forget_oldest()
 
+    @property
+    def is_behind(self) -> bool:
+        """Whether features are still to be taken."""
+        return len(self._left) > 0
+
+    def go_on(self, hypotheses: Hypotheses) -> None:
+        """Take in what some of the features say that are still to be taken."""
+        xy, self._left = self._left[:_AT_ONCE], self._left[_AT_ONCE:]
+        if not hypotheses.are_many:
+            hypotheses.correct(lambda f: self._constrain(f, xy))
+
     def _constrain(self, filter_: ErrorState, xy: Matrix) -> Correction | None:
-        """Correct by features, (M, K, 2) in the pictures of the tracks; None where they say nothing."""
+        """Correct by features, (M, K, 2); None where they say nothing."""
         held = {clone.t_ns: index for index, clone in enumerate(filter_.clones)}
-        stamps = self._tracks.stamps
-        there = [k for k, t_ns in enumerate(stamps) if t_ns in held]
-        at = [held[stamps[k]] for k in there]
+        there = [k for k, t_ns in enumerate(self._stamps) if t_ns in held]
+        at = [held[self._stamps[k]] for k in there]
         xy = xy[:, there]
         xy = xy[seen_in(xy).sum(axis=1) >= _LEAST_PICTURES]
         if len(xy) == 0:

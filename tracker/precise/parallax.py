@@ -23,7 +23,7 @@ INVERSE_DEPTH, INVERSE_DEPTH_SIGMA = 0.07, 0.2
 _NEAREST_INVERSE_M = 5.0
 #: Points nearer to the camera's plane than this, by their distance in the first picture, are behind it as far as can be told.
 _LEAST_Z = 0.05
-_STEPS = 5
+_STEPS = 3
 #: Directions of the poses of which features say less than this share of what they say of the best one are left out.
 _LEAST_SHARE = 1e-6
 
