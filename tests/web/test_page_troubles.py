@@ -176,9 +176,10 @@ def test_graphics_that_are_taken_away_come_back_as_they_were(browser: Browser, s
 
 def test_a_model_that_comes_late_is_shown_when_it_comes(browser: Browser, showing: Showing) -> None:
     with open_page(browser) as ar:
-        ar.page.route("**/models/*", lambda route: route.fulfill(status=404), times=1)
+        ar.page.route("**/models/*", lambda route: route.fulfill(status=404))
         ar.page.goto(f"{showing.url}ar")
         ar.until("document.querySelector('#notice').textContent.startsWith('The model of the square could not')")
+        ar.page.unroute("**/models/*")
         ar.until("agora.stats().triangles > 0")
         ar.until("document.querySelector('#notice').hidden")
 
