@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Annotated, Literal, NoReturn
 
 import typer
-from rich.console import Console
 from rich.markup import escape
 
 from assets.errors import AssetError
@@ -35,6 +34,7 @@ from server.progress import progress_bar
 from server.reviewing.command import export
 from server.serve_command import serve
 from server.simulate_command import simulate
+from server.terminal import terminal
 from server.token_command import token
 from tracker.errors import InputError
 from tracker.estimators import check_name
@@ -58,8 +58,8 @@ app.command()(doctor)
 app.command()(simulate)
 app.command()(export)
 app.add_typer(calibrate, name="calibrate")
-out = Console(highlight=False, emoji=False)
-err = Console(stderr=True, highlight=False, emoji=False)
+out = terminal()
+err = terminal(stderr=True)
 
 LogFile = Annotated[Path, typer.Argument(help="A walk: a ROS 2 bag in one MCAP file.", metavar="LOG")]
 
@@ -186,7 +186,7 @@ def evaluate(
 
         page = write_report(report_of(evaluation, traces, place), report)
         err.print(f"agora: the report is {page}", soft_wrap=True)
-    wide = out if out.is_terminal else Console(highlight=False, emoji=False, width=170)
+    wide = out if out.is_terminal else terminal(width=170)
     print_table(evaluation, wide)
 
 

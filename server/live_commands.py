@@ -9,7 +9,6 @@ from threading import Event
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
-from rich.console import Console
 from rich.live import Live
 
 from assets.site import Site
@@ -27,6 +26,7 @@ from server.options import (
     site_with,
     stop_asked,
 )
+from server.terminal import terminal
 
 Gps = Annotated[
     str,
@@ -53,7 +53,7 @@ AsJson = Annotated[bool, typer.Option("--json", help="A line of JSON each second
 if TYPE_CHECKING:
     from server.walking import Walking
 
-out = Console(highlight=False, emoji=False)
+out = terminal()
 
 
 def walk(

@@ -112,7 +112,7 @@ def _arrays(motions: list[VisualMotion]) -> dict[str, NDArray[np.generic]]:
         "is_keyframe": np.array([m.is_keyframe for m in motions], np.bool_),
         "track_counts": np.array([-1 if m.tracks is None else len(m.tracks.ids) for m in motions], np.int64),
         "track_ids": np.concatenate([np.zeros(0, np.int64), *(t.ids for t in tracks)]),
-        "track_rays": np.concatenate([np.zeros((0, 4), np.float32), *(np.hstack([t.xy_key, t.xy]) for t in tracks)]),
+        "track_rays": np.concatenate([np.zeros((0, 4), np.float32), *(t.rays for t in tracks)]),
     }
 
 
@@ -130,4 +130,4 @@ def _tracks(kept: dict[str, NDArray[np.generic]]) -> Iterator[VisualTracks | Non
     ids, rays, end = kept["track_ids"].astype(np.int64), kept["track_rays"].astype(np.float32), 0
     for count in kept["track_counts"].tolist():
         begin, end = end, end + max(0, count)
-        yield None if count < 0 else VisualTracks(ids[begin:end], rays[begin:end, :2], rays[begin:end, 2:])
+        yield None if count < 0 else VisualTracks(ids[begin:end], rays[begin:end])

@@ -7,9 +7,9 @@ from threading import Event
 from typing import Annotated, Literal
 
 import typer
-from rich.console import Console
 
 from assets.site import Site, load_site
+from server.terminal import terminal
 from tracker.estimators import ESTIMATORS
 
 ROOT = Path(__file__).parents[1]
@@ -62,7 +62,7 @@ def stop_asked() -> Event:
 def require_built(site: Site, web: Path = WEB) -> None:
     """End the program where there is nothing to serve yet."""
     if not (web / "index.html").is_file() or not any((site.folder / "built").glob("*.glb")):
-        Console(stderr=True, highlight=False, emoji=False).print(
+        terminal(stderr=True).print(
             "agora: the pages or the models are not built yet: run `make setup` (or `make demo`).", soft_wrap=True
         )
         raise typer.Exit(3)

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import typer
-from rich.console import Console
 
 from server.options import SITE, WEB, require_built, site_with, stop_asked
+from server.terminal import terminal
 
-out = Console(highlight=False, emoji=False)
+out = terminal()
 
 
 def serve(

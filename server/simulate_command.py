@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import typer
-from rich.console import Console
 
 from assets.site import load_site
 from server.options import SITE, SiteFolder
 from server.progress import progress_bar
+from server.terminal import terminal
 
 
 def simulate(
@@ -66,4 +66,4 @@ def simulate(
             progress=lambda done: bar.update(task, completed=done),
             pointed=lambda walk: pointed_out(walk, DEMO_POINTINGS if plan == "demo" else (), place.landmarks),
         )
-    Console(highlight=False, emoji=False).print(f"{log}: {settings.duration_s:.0f} s, {size / 1e6:.1f} MB")
+    terminal().print(f"{log}: {settings.duration_s:.0f} s, {size / 1e6:.1f} MB")

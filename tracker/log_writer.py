@@ -277,7 +277,8 @@ def _velocity(velocity: GpsVelocity) -> ros.RosMessage:
 
 
 def _motion(motion: VisualMotion) -> ros.RosMessage:
-    tracks = motion.tracks
+    seen = motion.tracks
+    ids, rays = (np.zeros(0, np.int64), np.zeros((0, 4), np.float32)) if seen is None else (seen.ids, seen.rays)
     return ros.message(
         ros.MOTION,
         header=ros.header(motion.t_ns, "camera_optical_frame"),
@@ -288,10 +289,8 @@ def _motion(motion: VisualMotion) -> ros.RosMessage:
         inliers=motion.inliers,
         parallax_px=motion.parallax_px,
         is_keyframe=motion.is_keyframe,
-        track_ids=tracks.ids if tracks is not None else np.zeros(0, np.int64),
-        track_rays=np.column_stack([tracks.xy_key, tracks.xy]).ravel()
-        if tracks is not None
-        else np.zeros(0, np.float32),
+        track_ids=ids,
+        track_rays=rays.ravel(),
     )
 
 

@@ -141,10 +141,18 @@ class VisualTracks:
 
     ids: NDArray[np.int64]
     """(N,) of each feature, the same from its first picture to its last."""
-    xy_key: NDArray[np.float32]
-    """(N, 2) where it was in the keyframe before."""
-    xy: NDArray[np.float32]
-    """(N, 2) where it is now."""
+    rays: NDArray[np.float32]
+    """(N, 4) x and y where it was in the keyframe before, x and y where it is now."""
+
+    @property
+    def xy_key(self) -> NDArray[np.float32]:
+        """(N, 2) in the keyframe before."""
+        return self.rays[:, :2]
+
+    @property
+    def xy(self) -> NDArray[np.float32]:
+        """(N, 2) now."""
+        return self.rays[:, 2:]
 
 
 @dataclass(frozen=True, slots=True)

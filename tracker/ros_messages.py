@@ -187,10 +187,6 @@ def gps_velocity(m: RosMessage, t_recv_ns: int) -> GpsVelocity:
 
 def visual_motion(m: RosMessage, t_recv_ns: int) -> VisualMotion:
     """Return the motion that a front end had found."""
-    ids = np.array(getattr(m, "track_ids", ()), np.int64)
-    rays = np.array(getattr(m, "track_rays", ()), np.float32)
-    has_tracks = len(ids) > 0 and len(rays) == 4 * len(ids)
-    rays = rays.reshape(-1, 4) if has_tracks else rays
     return VisualMotion(
         stamp_ns(m.header.stamp),
         t_recv_ns,
@@ -201,8 +197,16 @@ def visual_motion(m: RosMessage, t_recv_ns: int) -> VisualMotion:
         int(m.inliers),
         float(m.parallax_px),
         bool(m.is_keyframe),
-        VisualTracks(ids, rays[:, :2], rays[:, 2:]) if has_tracks else None,
+        _tracks(m),
     )
+
+
+def _tracks(m: RosMessage) -> VisualTracks | None:
+    """Return the features of a motion; None where it has none, or was recorded before features were."""
+    ids, rays = np.array(getattr(m, "track_ids", ()), np.int64), np.array(getattr(m, "track_rays", ()), np.float32)
+    if len(ids) == 0 or len(rays) != 4 * len(ids):
+        return None
+    return VisualTracks(ids, rays.reshape(-1, 4))
 
 
 def sighting(m: RosMessage, t_recv_ns: int) -> Sighting:

@@ -67,12 +67,10 @@ def _is_finite(measurement: Measurement) -> bool:
         case TruePose():
             return all(map(isfinite, (*measurement.p_map_body_m, *measurement.wxyz_map_body)))
         case VisualMotion():
-            numbers = (*measurement.direction_key, measurement.parallax_px)
             tracks = measurement.tracks
-            rays = () if tracks is None else (tracks.xy_key, tracks.xy)
-            return all(bool(np.all(np.isfinite(m))) for m in (measurement.R_key_cam, *rays)) and all(
-                map(isfinite, numbers)
-            )
+            rays = () if tracks is None else (tracks.rays,)
+            arrays = (measurement.R_key_cam, measurement.direction_key, measurement.parallax_px, *rays)
+            return all(bool(np.all(np.isfinite(array))) for array in arrays)
         case Sighting():
             return all(map(isfinite, (*measurement.point_site_m, *measurement.ray_cam, measurement.sigma_rad)))
         case Standpoint():

@@ -119,7 +119,7 @@ class VisionFrontEnd:
 
     def _followed(self, seen: _Tracks) -> VisualTracks:
         xy, key = self._rays(seen.view, seen.features), seen.bearings_key
-        return VisualTracks(seen.ids, (key[:, :2] / key[:, 2:]).astype(np.float32), xy.astype(np.float32))
+        return VisualTracks(seen.ids, np.hstack([key[:, :2] / key[:, 2:], xy]).astype(np.float32))
 
     def _follows(self, before: View, after: View) -> bool:
         """Return whether one picture can be tracked into another."""

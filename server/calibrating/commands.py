@@ -10,10 +10,10 @@ from threading import Event
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
-from rich.console import Console
 
 from server.options import Browser, Port
 from server.progress import progress_bar
+from server.terminal import terminal
 from tracker.calibrate.board import DICTIONARIES, Board
 from tracker.errors import InputError
 from tracker.rig_file import DEFAULT_PLACE, RigFile, read_rig_file
@@ -26,8 +26,8 @@ calibrate = typer.Typer(
     no_args_is_help=True,
     help="Find out how a rig's sensors err: the lens, how the camera sits and ticks, biases, and the rig's own iron.",
 )
-out = Console(highlight=False, emoji=False)
-err = Console(stderr=True, highlight=False, emoji=False)
+out = terminal()
+err = terminal(stderr=True)
 
 RecordedLog = Annotated[
     Path | None, typer.Option("--log", help="A recording, instead of live sensors.", metavar="FILE")

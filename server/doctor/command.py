@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Console
 from rich.status import Status
 
 from assets.site import Site
 from server.live_commands import Camera, Gps, Imu, RecordFolder, RigPlace
 from server.options import SITE, WEB, Browser, Port, SiteFolder, site_with
+from server.terminal import terminal
 
 if TYPE_CHECKING:
     from server.doctor.facts import FoundDevices, SensorFacts
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from tracker.rig_file import RigFile
     from tracker.sources.source import Source
 
-out = Console(highlight=False, emoji=False)
-err = Console(stderr=True, highlight=False, emoji=False)
+out = terminal()
+err = terminal(stderr=True)
 
 #: A word in the names of the Phidgets that are a receiver and an inertial unit.
 _PHIDGETS = {"gps": "GPS", "imu": "Spatial", "camera": "no camera"}

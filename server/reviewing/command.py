@@ -5,10 +5,10 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from server.options import SITE, WEB, Anchor, EstimatorName, SiteFolder
 from server.reviewing.page_size import DEFAULT_MB, LARGEST_MB, SMALLEST_MB
+from server.terminal import terminal
 
 
 def export(
@@ -46,7 +46,7 @@ def export(
     place, walk = load_site(site), Log.open(log)
     models = place.folder / "built"
     exporter = Exporter(WEB, models, place.folder, site_facts(place, models))
-    with Console(stderr=True, highlight=False, emoji=False).status(f"packing {walk.name}"):
+    with terminal(stderr=True).status(f"packing {walk.name}"):
         room = exporter.left_for_frames(max_mb)
         pack = packed(walk, PackJob(str(log), str(place.folder), estimator, anchor, pictures, room))
         course = thumbnails = None
@@ -59,6 +59,4 @@ def export(
         page.write_text(text, encoding="utf-8")
     except OSError as exc:
         raise InputError(f"{page} cannot be written: {exc.strerror}.") from exc
-    Console(highlight=False, emoji=False).print(
-        f"{page}: {walk.info.duration_s:.0f} s, {len(text) / 1e6:.1f} MB", soft_wrap=True
-    )
+    terminal().print(f"{page}: {walk.info.duration_s:.0f} s, {len(text) / 1e6:.1f} MB", soft_wrap=True)

@@ -21,7 +21,7 @@ def motion(tracks: VisualTracks | None) -> VisualMotion:
 
 def features() -> VisualTracks:
     rays = np.random.default_rng(1).normal(size=(7, 4)).astype(np.float32)
-    return VisualTracks(np.arange(3, 10), rays[:, :2], rays[:, 2:])
+    return VisualTracks(np.arange(3, 10), rays)
 
 
 @pytest.mark.parametrize("tracks", [None, features()], ids=["no features", "features"])
@@ -39,7 +39,7 @@ def test_a_motion_is_read_as_it_was_written(tmp_path: Path, tracks: VisualTracks
         assert read.tracks is None
         return
     assert read.tracks is not None
-    for name in ("ids", "xy_key", "xy"):
+    for name in ("ids", "rays"):
         np.testing.assert_array_equal(getattr(read.tracks, name), getattr(tracks, name), strict=True)
 
 

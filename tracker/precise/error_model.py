@@ -94,3 +94,10 @@ def skew(v: Matrix | Vector3) -> Matrix:
     """Return [v]x, (3, 3)."""
     x, y, z = (float(value) for value in v)
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def skews(v: Matrix) -> Matrix:
+    """Return [v]x of many vectors, (..., 3), as (..., 3, 3)."""
+    cross = np.zeros((*v.shape[:-1], 3, 3))
+    cross[..., 0, 1], cross[..., 0, 2], cross[..., 1, 2] = -v[..., 2], v[..., 1], -v[..., 0]
+    return np.asarray(cross - np.swapaxes(cross, -1, -2))

@@ -18,7 +18,6 @@ from tracker.geometry import conjugate, matrix_from_wxyz, multiply, normalise
 from tracker.geometry import exp as rotation_exp
 from tracker.geometry import log as log_rotation
 from tracker.measurements import Matrix, Vector3
-from tracker.precise.cross import cross_matrices
 from tracker.precise.error_model import (
     BG,
     FORGETTING,
@@ -32,6 +31,7 @@ from tracker.precise.error_model import (
     V,
     inertial_transition,
     skew,
+    skews,
 )
 from tracker.precise.navigation import Biases, Navigation, advance
 from tracker.precise.settings import PreciseSettings
@@ -250,7 +250,7 @@ class ErrorState:
         cov, clones = self.covariance, SIZE + 6 * np.arange(len(self.clones))
         moved = np.concatenate([[P.start, V.start], clones])[:, None] + np.arange(3)
         turned = np.concatenate([[THETA.start, THETA.start], clones + 3])[:, None] + np.arange(3)
-        by_turn = -cross_matrices(error[moved])
+        by_turn = -skews(error[moved])
         cov[moved] += by_turn @ cov[turned]
         cov[:, moved] += np.einsum("inj,nkj->ink", cov[:, turned], by_turn)
 

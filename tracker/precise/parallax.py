@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracker.measurements import Matrix
-from tracker.precise.cross import cross_matrices
+from tracker.precise.error_model import skews
 from tracker.precise.tracks import seen_in
 
 #: What is likely of 1/z, 1/m.
@@ -139,11 +139,11 @@ def _linearised(
     residual = np.where(seen[..., None], xy - rays, 0.0)
     by_point = np.where(seen[..., None, None], _by_point(relative, rays, z), 0.0)
     by_site = np.where(seen[..., None, None], _by_plane(rays, z) @ cameras.R_site_cam.transpose(0, 2, 1), 0.0)
-    inverse_m, lever = point[:, 2, None, None, None], cross_matrices(cameras.lever_site_m)
+    inverse_m, lever = point[:, 2, None, None, None], skews(cameras.lever_site_m)
     to_first = _each(cameras.R_site_cam[anchor], _on_plane(point))
     to = to_first[:, None] + point[:, 2, None, None] * (cameras.p_site_m[anchor][:, None] - cameras.p_site_m)
-    own = np.concatenate([-inverse_m * by_site, by_site @ (cross_matrices(to) + inverse_m * lever)], axis=-1)
-    turn_first = cross_matrices(to_first)[:, None] + inverse_m * lever[anchor][:, None]
+    own = np.concatenate([-inverse_m * by_site, by_site @ (skews(to) + inverse_m * lever)], axis=-1)
+    turn_first = skews(to_first)[:, None] + inverse_m * lever[anchor][:, None]
     of_first = np.concatenate([inverse_m * by_site, -by_site @ turn_first], axis=-1)
     by_pose = np.zeros((count, pictures, 2, pictures, 6))
     each, rows = np.arange(pictures), np.arange(count)

@@ -120,7 +120,6 @@ def _of_vision(motion: VisualMotion) -> Outcome | None:
 
 def _are_features(tracks: VisualTracks) -> bool:
     count = len(tracks.ids)
-    rays = np.column_stack([tracks.xy_key, tracks.xy]) if tracks.xy_key.shape == tracks.xy.shape == (count, 2) else None
-    if rays is None or count > _MOST_FEATURES or len(np.unique(tracks.ids)) < count:
+    if tracks.rays.shape != (count, 4) or count > _MOST_FEATURES or len(np.unique(tracks.ids)) < count:
         return False
-    return bool(np.all(np.abs(rays) < _WIDEST_RAY))
+    return bool(np.all(np.abs(tracks.rays) < _WIDEST_RAY))

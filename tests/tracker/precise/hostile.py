@@ -43,7 +43,7 @@ def sane(t_ns: int) -> dict[str, Measurement]:
 def features(count: int = 20) -> VisualTracks:
     """Return features that nothing is wrong with."""
     rays = np.linspace(-0.5, 0.5, 4 * count, dtype=np.float32).reshape(count, 4)
-    return VisualTracks(np.arange(count), rays[:, :2], rays[:, 2:])
+    return VisualTracks(np.arange(count), rays)
 
 
 def refused(t_ns: int) -> list[Case]:
@@ -131,7 +131,14 @@ def _no_features() -> list[VisualTracks]:
     broken = features()
     broken.xy_key[0, 1] = nan
     twice = replace(good, ids=np.zeros(len(good.ids), np.int64))
-    return [features(2000), twice, replace(good, ids=good.ids[1:]), replace(good, xy=good.xy[:, :1]), broken, behind]
+    return [
+        features(2000),
+        twice,
+        replace(good, ids=good.ids[1:]),
+        replace(good, rays=good.rays[:, :3]),
+        broken,
+        behind,
+    ]
 
 
 def _of_vision(vision: VisualMotion) -> list[Case]:

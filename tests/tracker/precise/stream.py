@@ -67,7 +67,7 @@ def _seen(of: Walk) -> Iterator[VisualMotion]:
         is_key, xy = index % _KEY_EVERY == 0, seen_from(T_site_cam[:, :3, :3], T_site_cam[:, :3, 3], points_m)
         ids = np.flatnonzero(seen_in(xy).all(axis=1))
         rays = (xy[ids] + rng.normal(0.0, 0.001, (len(ids), 2, 2))).astype(np.float32)
-        tracks = VisualTracks(ids, rays[:, 0], rays[:, 1]) if is_key else None
+        tracks = VisualTracks(ids, rays.reshape(-1, 4)) if is_key else None
         arrived_ns, parallax_px = t_ns + 38_000_000, 9.0 if far else 1.0
         yield VisualMotion(t_ns, arrived_ns, index, t_key_ns, R_key_cam, (x, y, z), 90, parallax_px, is_key, tracks)
 

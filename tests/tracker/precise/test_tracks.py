@@ -13,8 +13,8 @@ MOST = 4
 
 def looks(t_key: int, t: int, ids: list[int]) -> VisualTracks:
     """Every ray tells which feature it is of, and when."""
-    rays = [np.array([[i, t_ns] for i in ids], np.float32).reshape(-1, 2) for t_ns in (t_key, t)]
-    return VisualTracks(np.array(ids, np.int64), *rays)
+    rays = np.array([[i, t_key, i, t] for i in ids], np.float32).reshape(-1, 4)
+    return VisualTracks(np.array(ids, np.int64), rays)
 
 
 @given(st.lists(st.sets(st.integers(0, 12), max_size=8), min_size=2, max_size=12))
