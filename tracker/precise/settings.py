@@ -70,7 +70,7 @@ class PreciseSettings:
     eye_height_repeats: float = 8.0
     """and how many times it says the same in a quarter of a second each: its error does not average out."""
     feature_px: float = 0.7
-    """Error of a feature in a picture, at best (drawn pictures: 0.25)."""
+    """Error of a feature in a picture, at best."""
     feature_nis: float = 3.0
     """Per dimension: a feature that is further off slid along an outline, or moves by itself."""
     feature_pictures: int = 8

@@ -10,20 +10,17 @@ import {
   type DepthTexture,
   HalfFloatType,
   LinearFilter,
-  Mesh,
   NearestFilter,
   NoBlending,
-  OrthographicCamera,
-  PlaneGeometry,
   RedFormat,
   RGFormat,
-  Scene,
   ShaderMaterial,
   type Texture,
   Vector2,
   type WebGLRenderer,
   WebGLRenderTarget,
 } from "three";
+import { Quad } from "./quad";
 
 /** One pixel here stands for this many of the drawing's, along each side. */
 const COARSER = 4;
@@ -78,9 +75,7 @@ export interface Doubted {
 export class SoftEdges {
   private readonly found = small(RGFormat, NearestFilter);
   private readonly softened = small(RedFormat, LinearFilter);
-  private readonly flat = new OrthographicCamera();
-  private readonly scene = new Scene();
-  private readonly sheet = new Mesh(new PlaneGeometry(2, 2));
+  private readonly quad = new Quad();
   private readonly finding = pass(FOUND, { drawing: null, depth: null, reach: new Vector2() });
   private readonly softening = pass(SOFTENED, {
     found: null,
@@ -89,11 +84,6 @@ export class SoftEdges {
     place_px: 0,
     widest_px: 0,
   });
-
-  constructor() {
-    this.sheet.frustumCulled = false;
-    this.scene.add(this.sheet);
-  }
 
   /** How much gives way, 0 to 1, over the drawing. */
   get texture(): Texture {
@@ -130,9 +120,9 @@ export class SoftEdges {
   }
 
   private render(renderer: WebGLRenderer, material: ShaderMaterial, target: WebGLRenderTarget): void {
-    this.sheet.material = material;
+    this.quad.material = material;
     renderer.setRenderTarget(target);
-    renderer.render(this.scene, this.flat);
+    this.quad.draw(renderer);
   }
 }
 

@@ -41,7 +41,7 @@ export class Painting {
 
   /** Compile what is not drawn with yet, but may be soon. */
   async ready(readying: Readying): Promise<void> {
-    for (const { scene, camera } of [this.still, this.veil]) await readying.compile(scene, camera);
+    for (const { quad } of [this.still, this.veil]) await readying.compile(quad.scene, quad.camera);
   }
 
   /** What stood still is no longer as it was. */

@@ -6,16 +6,13 @@
 import {
   AlwaysDepth,
   DepthTexture,
-  Mesh,
-  OrthographicCamera,
-  PlaneGeometry,
-  Scene,
   ShaderMaterial,
   SRGBColorSpace,
   UnsignedIntType,
   type WebGLRenderer,
   WebGLRenderTarget,
 } from "three";
+import { Quad } from "../quad";
 
 /** As many as browsers take for a canvas with smooth edges. */
 const SAMPLES = 4;
@@ -35,8 +32,6 @@ const FRAGMENT = /* glsl */ `
 export class Still {
   private target: WebGLRenderTarget | null = null;
   private kept = false;
-  readonly scene = new Scene();
-  readonly camera = new OrthographicCamera();
   private readonly material = new ShaderMaterial({
     uniforms: { picture: { value: null }, depth: { value: null } },
     vertexShader: VERTEX,
@@ -45,11 +40,7 @@ export class Still {
     toneMapped: false,
   });
 
-  constructor() {
-    const quad = new Mesh(new PlaneGeometry(2, 2), this.material);
-    quad.frustumCulled = false;
-    this.scene.add(quad);
-  }
+  readonly quad = new Quad(this.material);
 
   get isKept(): boolean {
     return this.kept;
@@ -65,7 +56,7 @@ export class Still {
 
   /** Draw what was kept, its depth too. */
   draw(renderer: WebGLRenderer): void {
-    renderer.render(this.scene, this.camera);
+    this.quad.draw(renderer);
   }
 
   /** What was kept is so no longer. */

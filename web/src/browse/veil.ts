@@ -1,15 +1,7 @@
 /** What was drawn last, kept and drawn over what is drawn next, to fade from one to the other. three.js only. */
 
-import {
-  FramebufferTexture,
-  Mesh,
-  OrthographicCamera,
-  PlaneGeometry,
-  Scene,
-  ShaderMaterial,
-  Vector2,
-  type WebGLRenderer,
-} from "three";
+import { FramebufferTexture, ShaderMaterial, Vector2, type WebGLRenderer } from "three";
+import { Quad } from "../quad";
 
 const VERTEX = /* glsl */ `
   varying vec2 vAt;
@@ -23,8 +15,6 @@ const FRAGMENT = /* glsl */ `
 
 export class Veil {
   private picture: FramebufferTexture | null = null;
-  readonly scene = new Scene();
-  readonly camera = new OrthographicCamera();
   private readonly material = new ShaderMaterial({
     uniforms: { picture: { value: null }, share: { value: 1 }, part: { value: 1 } },
     vertexShader: VERTEX,
@@ -35,11 +25,7 @@ export class Veil {
     toneMapped: false,
   });
 
-  constructor() {
-    const quad = new Mesh(new PlaneGeometry(2, 2), this.material);
-    quad.frustumCulled = false;
-    this.scene.add(quad);
-  }
+  readonly quad = new Quad(this.material);
 
   /** Keep what is drawn now. */
   take(renderer: WebGLRenderer): void {
@@ -55,6 +41,6 @@ export class Veil {
   draw(renderer: WebGLRenderer, share: number, part: number): void {
     const uniforms = this.material.uniforms as Record<"picture" | "share" | "part", { value: unknown }>;
     [uniforms.picture.value, uniforms.share.value, uniforms.part.value] = [this.picture, share, part];
-    renderer.render(this.scene, this.camera);
+    this.quad.draw(renderer);
   }
 }
