@@ -2,7 +2,7 @@
 
 import json
 import webbrowser
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from signal import SIGINT, signal
@@ -100,7 +100,14 @@ def camera(
 
 @calibrate.command("rig")
 def rig_command(
-    log: RecordedLog = None,
+    log: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--log",
+            help="A recording, instead of live sensors. Given several times, recordings of one rig are calibrated together.",
+            metavar="FILE",
+        ),
+    ] = None,
     camera: Camera = "0",
     imu: Imu = "phidget",
     rig: RigPlace = None,
@@ -116,11 +123,12 @@ def rig_command(
     from server.calibrating.mount_run import calibrate_rig
 
     place, rig_file = _rig_file(rig)
-    feed = _feed(log, rig_file, camera=camera, imu=imu, seconds=seconds, has_pictures=True)
-    if feed.is_live and not as_json:
+    logs: Sequence[Path | None] = log or [None]
+    feeds = [_feed(path, rig_file, camera=camera, imu=imu, seconds=seconds, has_pictures=True) for path in logs]
+    if feeds[0].is_live and not as_json:
         out.print("Stand in the open. Pan to both sides, then nod and tilt, not too fast …")
     with _told() as told:
-        result = calibrate_rig(feed, rig_file, _board(squares, square, dictionary), told)
+        result = calibrate_rig(feeds, rig_file, _board(squares, square, dictionary), told)
     _finish(result, place, report, as_json=as_json, dry_run=dry_run)
 
 

@@ -37,6 +37,11 @@ class Feed(Protocol):
         ...
 
     @property
+    def name(self) -> str:
+        """What it is called where there are several."""
+        ...
+
+    @property
     def is_live(self) -> bool:
         """Whether somebody stands beside the rig and waits."""
         ...
@@ -68,6 +73,11 @@ class RecordedFeed:
         """The log's own."""
         return self.log.rig
 
+    @property
+    def name(self) -> str:
+        """The file's."""
+        return self.log.path.name
+
     def measurements(self, progress: Progress) -> Iterator[Measurement]:
         """Yield what the log holds, but for the truth."""
         begin_ns, duration_ns = self.log.info.t_start_ns, max(1.0, self.log.info.duration_s * 1e9)
@@ -77,7 +87,7 @@ class RecordedFeed:
 
     def device(self, sensor: str) -> tuple[str, str]:
         """Return the log's name: it does not say which devices it was recorded with."""
-        return f"recorded in {self.log.path.name}", ""
+        return f"recorded in {self.name}", ""
 
     def first_fix(self) -> GpsFix | None:
         """Return the log's first."""
@@ -92,6 +102,11 @@ class PictureFeed:
 
     is_live = False
     rig = Rig()
+
+    @property
+    def name(self) -> str:
+        """The file's."""
+        return self.path.name
 
     def measurements(self, progress: Progress) -> Iterator[Measurement]:
         """Yield the pictures: a video's by its times, photographs a second apart.
@@ -129,7 +144,7 @@ class PictureFeed:
 
     def device(self, sensor: str) -> tuple[str, str]:
         """Return the file's name."""
-        return f"seen in {self.path.name}", ""
+        return f"seen in {self.name}", ""
 
     def first_fix(self) -> GpsFix | None:
         """Return None."""
@@ -147,6 +162,7 @@ class LiveFeed:
     _fix: GpsFix | None = None
 
     is_live = True
+    name = "live"
 
     def measurements(self, progress: Progress) -> Generator[Measurement, None, None]:
         """Yield what they say, from when all of them have begun.

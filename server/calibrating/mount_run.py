@@ -1,16 +1,13 @@
 """`agora calibrate rig`: camera against gyroscope, by corners that were followed, or by the board where that is in view."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Literal
-
-import numpy as np
+from typing import TypeVar
 
 from server.calibrating.feed import Feed, Progress
 from server.calibrating.lens_run import result_of as lens_result
-from server.calibrating.result import Result, joined, today
-from server.plots.mount import mount_pictures
-from server.plots.style import Picture
+from server.calibrating.mount_result import device_of, mount_result
+from server.calibrating.result import Result, joined
 from tracker.calibrate.board import Board, BoardView
 from tracker.calibrate.board_turns import board_turns
 from tracker.calibrate.camera_lens import LensFit, fit_lens
@@ -21,35 +18,50 @@ from tracker.calibrate.camera_mount import (
     find_mount_by_flow,
     unknown_camera,
 )
+from tracker.calibrate.common_mount import CommonMount, common_mount
 from tracker.calibrate.flow import Flow
 from tracker.calibrate.gyro_track import GyroTrack
-from tracker.calibrate.turns import PointPair, Turns
+from tracker.calibrate.turns import PointPair
 from tracker.errors import InputError, MalformedInput
 from tracker.lens import scaled
 from tracker.measurements import Frame, ImuSample
 from tracker.rig import CameraModel
 from tracker.rig_file import RigFile
-from tracker.rig_sheets import CameraMountSheet, CameraSheet
 
-#: Standard errors that are good enough to be kept.
-LARGEST_ROTATION_SIGMA_RAD = np.radians(0.5)
-LARGEST_OFFSET_SIGMA_S = 0.005
-LARGEST_FOCAL_SCATTER = 0.02
-#: Share of the turning that must be across the line of sight for a focal length.
-LEAST_ACROSS = 0.6
+T = TypeVar("T")
+
 #: The board is looked for in every fifth picture until it was seen.
 _LOOK_EVERY = 5
 
 
 @dataclass
 class _Gathered:
+    """What one recording holds."""
+
+    feed: Feed
     board: Board
     flow: Flow = field(default_factory=Flow)
     samples: list[ImuSample] = field(default_factory=list)
     pairs: list[PointPair] = field(default_factory=list)
     views: list[BoardView] = field(default_factory=list)
 
-    def step(self, frame: Frame) -> None:
+    def read(self, progress: Progress) -> None:
+        """Gather all of it.
+
+        Raises:
+            InputError: There are no pictures.
+        """
+        for measurement in self.feed.measurements(progress):
+            if isinstance(measurement, ImuSample):
+                self.samples.append(measurement)
+            elif isinstance(measurement, Frame):
+                self._look(measurement)
+        if self.flow.size_px is None:
+            raise InputError(
+                "There are no pictures in this: `agora calibrate rig` needs a camera beside the gyroscope."
+            )
+
+    def _look(self, frame: Frame) -> None:
         pair = self.flow.step(frame)
         if pair is not None:
             self.pairs.append(pair)
@@ -61,49 +73,100 @@ class _Gathered:
             if view is not None:
                 self.views.append(view)
 
+    @property
+    def size_px(self) -> tuple[int, int]:
+        """Of the pictures."""
+        return self.flow.size_px or (0, 0)
 
-def calibrate_rig(feed: Feed, rig_file: RigFile, board: Board, progress: Progress) -> Result:
-    """Return how the camera sits beside the inertial unit.
+    @property
+    def shows_board(self) -> bool:
+        """Whether the board was there for most of it."""
+        return len(self.views) >= max(LEAST_PAIRS, 0.3 * self.flow.pictures)
+
+    @property
+    def t_zero_ns(self) -> int:
+        """Time zero of its track."""
+        return self.samples[0].t_ns if self.samples else 0
+
+    @property
+    def stated_lens(self) -> CameraModel | None:
+        """The lens that a recording states for its own pictures; of live sensors the rig file knows all that is known."""
+        camera = None if self.feed.is_live else self.feed.rig.camera
+        return camera if camera is not None and (camera.width_px, camera.height_px) == self.size_px else None
+
+    def by_board(self, lens: CameraModel, progress: Progress) -> CameraMount | None:
+        """Return the mount by the board's views; None where they are too few."""
+        turns = board_turns(self.views, self.board, lens, self.t_zero_ns, lambda share: progress("comparing", share))
+        if len(turns.times_s) < LEAST_PAIRS:
+            return None
+        return find_mount_by_board(GyroTrack.of(self.samples, self.t_zero_ns), turns, lens)
+
+    def by_flow(self, lens: CameraModel | None, progress: Progress) -> CameraMount:
+        """Return the mount by corners that were followed, and the focal length with it where no lens is given."""
+        what = "finding the focal length" if lens is None else "comparing"
+        return find_mount_by_flow(
+            GyroTrack.of(self.samples, self.t_zero_ns),
+            self.pairs,
+            self.t_zero_ns,
+            unknown_camera(*self.size_px) if lens is None else lens,
+            focal_is_free=lens is None,
+            progress=lambda share: progress(what, share),
+        )
+
+
+def calibrate_rig(feeds: Sequence[Feed], rig_file: RigFile, board: Board, progress: Progress) -> Result:
+    """Return how the camera sits beside the inertial unit, from one recording or from several of the same rig.
 
     Raises:
         InputError: Nothing can be told; with the remedy.
     """
-    gathered = _Gathered(board)
-    for measurement in feed.measurements(progress):
-        if isinstance(measurement, ImuSample):
-            gathered.samples.append(measurement)
-        elif isinstance(measurement, Frame):
-            gathered.step(measurement)
-    if gathered.flow.size_px is None:
-        raise InputError("There are no pictures in this: `agora calibrate rig` needs a camera beside the gyroscope.")
-    t_zero_ns = gathered.samples[0].t_ns if gathered.samples else 0
-    track = GyroTrack.of(gathered.samples, t_zero_ns)
-    size_px = gathered.flow.size_px
-    known, stated = _known_lens(rig_file, size_px), _stated_lens(feed, size_px)
-    if len(gathered.views) >= max(LEAST_PAIRS, 0.3 * gathered.flow.pictures):
-        fit = None if known is not None else _lens_by_board(gathered, progress)
+    recordings = [_Gathered(feed, board) for feed in feeds]
+    _each(recordings, lambda gathered: gathered.read(progress))
+    size_px = _one_size(recordings)
+    known = _known_lens(rig_file, size_px)
+    stated = recordings[0].stated_lens if len({gathered.stated_lens for gathered in recordings}) == 1 else None
+    if all(gathered.shows_board for gathered in recordings):
+        fit = None if known is not None else _lens_by_board(recordings, progress)
         lens = known or (stated if fit is None else fit.camera)
-        turns = None if lens is None else _turns_by_board(gathered, lens, t_zero_ns, progress)
-        if lens is not None and turns is not None:
-            result = _result(find_mount_by_board(track, turns, lens), None, feed, rig_file, by="board")
-            return result if fit is None else joined(lens_result(fit, feed.device("camera")), result)
+        mounts = [] if lens is None else _each(recordings, lambda gathered: gathered.by_board(lens, progress))
+        before_board = [mount for mount in mounts if mount is not None]
+        if len(before_board) == len(recordings):
+            result = mount_result(common_mount(before_board), None, feeds, rig_file, by="board")
+            return result if fit is None else joined(lens_result(fit, device_of(feeds)), result)
 
-    def by_flow(camera: CameraModel, what: str, *, focal_is_free: bool) -> CameraMount:
-        return find_mount_by_flow(
-            track,
-            gathered.pairs,
-            t_zero_ns,
-            camera,
-            focal_is_free=focal_is_free,
-            progress=lambda share: progress(what, share),
-        )
+    def by_flow(lens: CameraModel | None) -> CommonMount:
+        return common_mount(_each(recordings, lambda gathered: gathered.by_flow(lens, progress)))
 
     if known is not None:
-        return _result(by_flow(known, "comparing", focal_is_free=False), None, feed, rig_file, by="flow")
-    free = by_flow(unknown_camera(*size_px), "finding the focal length", focal_is_free=True)
-    # a recording that says which lens it had is believed for the mount, but the focal length is found without it
-    mount = free if stated is None else by_flow(stated, "comparing", focal_is_free=False)
-    return _result(mount, free, feed, rig_file, by="flow")
+        return mount_result(by_flow(known), None, feeds, rig_file, by="flow")
+    free = by_flow(None)
+    # recordings that say which lens they had are believed for the mount, but the focal length is found without it
+    mount = free if stated is None else by_flow(stated)
+    return mount_result(mount, free, feeds, rig_file, by="flow")
+
+
+def _each(recordings: Sequence[_Gathered], ask: Callable[[_Gathered], T]) -> list[T]:
+    """Return what each recording answers; where there are several, what is wrong is said with the recording's name."""
+    answers = []
+    for gathered in recordings:
+        try:
+            answers.append(ask(gathered))
+        except InputError as error:
+            if len(recordings) == 1:
+                raise
+            raise InputError(f"{gathered.feed.name}: {error}") from error
+    return answers
+
+
+def _one_size(recordings: Sequence[_Gathered]) -> tuple[int, int]:
+    first = recordings[0]
+    for other in recordings[1:]:
+        if other.size_px != first.size_px:
+            raise InputError(
+                f"{first.feed.name} has pictures of {first.size_px[0]} x {first.size_px[1]} px, but {other.feed.name} of "
+                f"{other.size_px[0]} x {other.size_px[1]}: give recordings of one camera at one size."
+            )
+    return first.size_px
 
 
 def _known_lens(rig_file: RigFile, size_px: tuple[int, int]) -> CameraModel | None:
@@ -120,147 +183,10 @@ def _known_lens(rig_file: RigFile, size_px: tuple[int, int]) -> CameraModel | No
     return scaled(sheet.camera, width, height)
 
 
-def _stated_lens(feed: Feed, size_px: tuple[int, int]) -> CameraModel | None:
-    """Return the lens that a recording states for its own pictures; of live sensors the rig file knows all that is known."""
-    camera = None if feed.is_live else feed.rig.camera
-    return camera if camera is not None and (camera.width_px, camera.height_px) == size_px else None
-
-
-def _lens_by_board(gathered: _Gathered, progress: Progress) -> LensFit | None:
+def _lens_by_board(recordings: Sequence[_Gathered], progress: Progress) -> LensFit | None:
     """Return the lens as the same views of the board tell it; None where they are too few or too much alike."""
+    views = [view for gathered in recordings for view in gathered.views]
     try:
-        return fit_lens(gathered.views, gathered.board, lambda what: progress(what, 0.0))
+        return fit_lens(views, recordings[0].board, lambda what: progress(what, 0.0))
     except InputError:
         return None
-
-
-def _turns_by_board(gathered: _Gathered, lens: CameraModel, t_zero_ns: int, progress: Progress) -> Turns | None:
-    """Return the turns before the board; None where they are too few."""
-    turns = board_turns(gathered.views, gathered.board, lens, t_zero_ns, lambda share: progress("comparing", share))
-    return turns if len(turns.times_s) >= LEAST_PAIRS else None
-
-
-def _result(
-    mount: CameraMount, free: CameraMount | None, feed: Feed, rig_file: RigFile, *, by: Literal["board", "flow"]
-) -> Result:
-    """Return the mount as tables and words, and the focal length of `free`, which was found with no lens known."""
-    alignment, device = mount.alignment, feed.device("camera")
-    worst = float(alignment.rotation_sigmas_rad[-1])
-    sheets: dict[str, CameraMountSheet | CameraSheet] = {}
-    doubts: list[str] = []
-    if worst > LARGEST_ROTATION_SIGMA_RAD or alignment.offset_sigma_s > LARGEST_OFFSET_SIGMA_S:
-        doubts.append(
-            f"The mount was not kept: about one axis it is uncertain by {np.degrees(worst):.1f} degrees (0.5 is asked for), "
-            f"and the clock by {alignment.offset_sigma_s * 1e3:.1f} ms (5): pan to both sides, then nod and tilt as well, "
-            "a bit faster."
-        )
-    else:
-        sheets["camera_mount"] = _mount_sheet(mount, feed, rig_file, device)
-    found = [*_words(mount, by), *_against_present(mount, rig_file)]
-    if free is not None:
-        focal_px, scatter_px = free.camera.fx_px, free.focal_scatter_px
-        stated = "" if mount is free else f"; the recording states {mount.camera.fx_px:.1f}"
-        least_px, most_px = _focal_between_px(free)
-        found.insert(
-            0,
-            f"Focal length {focal_px:.1f} px by the turning alone{stated}. Its turns agree within ±{scatter_px:.1f} px; with what "
-            f"no turn tells (the gyroscope's scale, a lens that bends, the camera's way about who holds it) it is between "
-            f"{least_px:.0f} and {most_px:.0f} px, nineteen times of twenty.",
-        )
-        if free.across < LEAST_ACROSS:
-            doubts.append(
-                f"The focal length, {focal_px:.0f} px, was not kept: the rig mostly rolled about the line of sight, "
-                "which hardly tells it: pan instead, or run `agora calibrate camera`."
-            )
-        elif scatter_px > LARGEST_FOCAL_SCATTER * focal_px:
-            doubts.append(
-                f"The focal length, {focal_px:.0f} px, was not kept: its turns agree only within {scatter_px / focal_px:.1%}: "
-                "pan further and longer, or run `agora calibrate camera`."
-            )
-        else:
-            sheets["camera"] = _camera_sheet(free, device)
-            found.append(
-                "The lens is taken as one that does not bend; `agora calibrate camera` measures it with a board."
-            )
-    numbers = {
-        "focal_px": (free or mount).camera.fx_px,
-        "focal_sigma_px": (free or mount).focal_sigma_px,
-        "focal_between_px": _focal_between_px(free or mount),
-        "focal_is_found": free is not None,
-        "R_body_cam": alignment.R_body_cam.tolist(),
-        "rotation_sigma_deg": float(np.degrees(worst)),
-        "time_offset_s": alignment.offset_s,
-        "time_sigma_s": alignment.offset_sigma_s,
-        "gyro_bias_rad_s": alignment.bias_rad_s.tolist(),
-        "readout_s": mount.readout_s,
-        "residual_px": mount.residual_px,
-        "by": by,
-    }
-
-    def pictures() -> Sequence[Picture]:
-        return mount_pictures(mount)
-
-    return Result("rig", sheets, found, doubts, numbers, pictures)
-
-
-def _focal_between_px(mount: CameraMount) -> tuple[float, float]:
-    """Return the ends of what holds the focal length nineteen times of twenty."""
-    off_px = 1.96 * mount.focal_sigma_px
-    return mount.camera.fx_px - off_px, mount.camera.fx_px + off_px
-
-
-def _mount_sheet(mount: CameraMount, feed: Feed, rig_file: RigFile, device: tuple[str, str]) -> CameraMountSheet:
-    before = rig_file.rig() if rig_file.camera_mount is not None else feed.rig
-    T_body_cam = np.eye(4)
-    T_body_cam[:3, :3] = mount.alignment.R_body_cam
-    T_body_cam[:3, 3] = before.T_body_cam[:3, 3]
-    return CameraMountSheet(
-        date=today(),
-        device=device[0],
-        serial=device[1],
-        T_body_cam=tuple(tuple(row) for row in T_body_cam.tolist()),
-        time_offset_s=mount.alignment.offset_s,
-        rotation_sigma_rad=float(mount.alignment.rotation_sigmas_rad[-1]),
-        time_sigma_s=mount.alignment.offset_sigma_s,
-        residual_px=mount.residual_px,
-    )
-
-
-def _camera_sheet(mount: CameraMount, device: tuple[str, str]) -> CameraSheet:
-    return CameraSheet.of(
-        mount.camera,
-        date=today(),
-        device=device[0],
-        serial=device[1],
-        method="pan",
-        rms_px=mount.residual_px,
-        focal_sigma_px=mount.focal_sigma_px,
-        views=mount.pairs,
-        coverage=1.0,
-    )
-
-
-def _words(mount: CameraMount, by: Literal["board", "flow"]) -> list[str]:
-    alignment = mount.alignment
-    words = [
-        f"The camera's pictures are {abs(alignment.offset_s) * 1e3:.1f} ms too {'early' if alignment.offset_s > 0 else 'late'} "
-        f"in their stamps, ±{alignment.offset_sigma_s * 1e3:.1f}.",
-        f"The camera's axes on the rig are known to {', '.join(f'{s:.2f}' for s in np.degrees(alignment.rotation_sigmas_rad))} "
-        f"degrees (best to worst axis), from {mount.pairs} turns of {np.degrees(mount.turn_rad):.0f} degrees in all, "
-        f"{'before the board' if by == 'board' else 'by corners that were followed'}.",
-        f"What of a turn the gyroscope does not explain: {mount.residual_px:.2f} px, median.",
-    ]
-    if mount.readout_s:
-        words.append(
-            f"The camera reads its rows one after the other, in {abs(mount.readout_s) * 1e3:.0f} ms (rolling shutter)."
-        )
-    return words
-
-
-def _against_present(mount: CameraMount, rig_file: RigFile) -> list[str]:
-    """Say how far the new mount is from the one so far."""
-    if rig_file.camera_mount is None:
-        return []
-    R = rig_file.rig().T_body_cam[:3, :3].T @ mount.alignment.R_body_cam
-    angle = float(np.degrees(np.arccos(np.clip(0.5 * (np.trace(R) - 1.0), -1.0, 1.0))))
-    return [f"That is {angle:.2f} degrees from the mount that was known so far."]

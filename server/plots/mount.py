@@ -1,6 +1,6 @@
 """Camera against gyroscope: the same turns as both saw them, and what is left."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -12,17 +12,18 @@ from tracker.calibrate.camera_mount import CameraMount
 _AXES = ("forward (roll)", "left (nod)", "up (pan)")
 
 
-def mount_pictures(mount: CameraMount) -> Sequence[Picture]:
-    """Return the figure of a mount."""
-    offset_ms = mount.alignment.offset_s * 1e3
+def mount_pictures(mounts: Mapping[str, CameraMount]) -> Sequence[Picture]:
+    """Return the figure of each recording's mount; of several, with the recording's name."""
     return [
         drawn(
             turning_figure(mount),
-            "turning",
-            f"The rig's turning as gyroscope and camera saw it, about the body's axes. The pictures' times are moved by "
-            f"{offset_ms:+.1f} ms and their turns into the body's axes, as found; where both lie on each other the calibration "
-            f"fits. Below each, what is left: {np.degrees(mount.alignment.residual_rad):.3f} degrees a turn, median.",
+            f"turning-{number}" if number > 1 else "turning",
+            f"{f'{name}: the' if len(mounts) > 1 else 'The'} rig's turning as gyroscope and camera saw it, about the body's axes. "
+            f"The pictures' times are moved by {mount.alignment.offset_s * 1e3:+.1f} ms and their turns into the body's axes, as "
+            f"found; where both lie on each other the calibration fits. Below each, what is left: "
+            f"{np.degrees(mount.alignment.residual_rad):.3f} degrees a turn, median.",
         )
+        for number, (name, mount) in enumerate(mounts.items(), 1)
     ]
 
 

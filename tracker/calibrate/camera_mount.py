@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tracker import rotations
-from tracker.calibrate.alignment import Alignment, align, rough
+from tracker.calibrate.alignment import Alignment, align, align_all, rough
 from tracker.calibrate.gyro_track import GyroTrack
 from tracker.calibrate.shutter import readout_s, without_shutter
 from tracker.calibrate.turns import CORNER_SIGMA_PX, PointPair, Turns, times_of, turns_of, with_focal
@@ -48,25 +48,39 @@ class CameraMount:
     focal_scatter_px: float
     """By how much the turns of this recording disagree about the focal length, as its standard error."""
     readout_s: float
-    pairs: int
     turn_rad: float
     """All turning added up."""
-    across: float
-    """Share of the turning that was across the line of sight, 0 to 1: only that tells the focal length."""
     track: GyroTrack
     turns: Turns
+    pairs: Sequence[PointPair] = ()
+    """What the turns were made of, without the shutter; empty before a board."""
+    t_zero_ns: int = 0
+    """Time zero of the track."""
+
+    @property
+    def across(self) -> float:
+        """Share of the turning that was across the line of sight, 0 to 1: only that tells the focal length."""
+        squares = np.mean(self.turns.vectors_rad**2, axis=0)
+        return float(np.sqrt(squares[:2].sum() / squares.sum()))
 
     @property
     def focal_sigma_px(self) -> float:
         """Standard error of the focal length, with what a turn cannot tell apart from it; zero where it was known."""
-        return (
-            float(np.hypot(self.focal_scatter_px, _UNTOLD_SHARE * self.camera.fx_px)) if self.focal_scatter_px else 0.0
-        )
+        return with_untold(self.focal_scatter_px, self.camera)
 
     @property
     def residual_px(self) -> float:
         """What of the pictures' turning the gyroscope does not explain."""
         return self.alignment.residual_rad * self.camera.fx_px
+
+
+def with_untold(focal_scatter_px: float, camera: CameraModel) -> float:
+    """Return the standard error of a focal length of which the turns tell so much; zero where they were not asked for it.
+
+    What no turn tells does not average out over turns, nor over recordings: it is the same gyroscope, the same lens, and somebody
+    who holds the rig at the same arm's length.
+    """
+    return float(np.hypot(focal_scatter_px, _UNTOLD_SHARE * camera.fx_px)) if focal_scatter_px else 0.0
 
 
 def unknown_camera(width_px: int, height_px: int) -> CameraModel:
@@ -105,14 +119,17 @@ def find_mount_by_flow(
         tried.append((*rough(track, turns, _OFFSETS_S), lens_))
         progress(0.6 * (i + 1) / len(focals))
     _, offset_s, R, lens_ = min(tried, key=lambda item: item[0])
-    found, turns, lens_ = _aligned(track, pairs, t_zero_ns, lens_, R, offset_s, focal_is_free)
+    (found,), (turns,), lens_ = aligned([(track, pairs, t_zero_ns)], lens_, R, [offset_s], focal_is_free=focal_is_free)
     progress(0.7)
     readout = readout_s(track, pairs, t_zero_ns, lens_, found)
     if readout:
         pairs = without_shutter(track, pairs, t_zero_ns, lens_, found, readout)
-        found, turns, lens_ = _aligned(track, pairs, t_zero_ns, lens_, found.R_body_cam, found.offset_s, focal_is_free)
+        (found,), (turns,), lens_ = aligned(
+            [(track, pairs, t_zero_ns)], lens_, found.R_body_cam, [found.offset_s], focal_is_free=focal_is_free
+        )
     progress(1.0)
-    return _judged(track, turns, found, lens_, readout, turn_rad)
+    scatter_px = found.log_focal_sigma * lens_.fx_px
+    return _judged(CameraMount(found, lens_, scatter_px, readout, turn_rad, track, turns, pairs, t_zero_ns))
 
 
 def find_mount_by_board(track: GyroTrack, turns: Turns, camera: CameraModel) -> CameraMount:
@@ -125,25 +142,34 @@ def find_mount_by_board(track: GyroTrack, turns: Turns, camera: CameraModel) -> 
     if len(turns.times_s) < LEAST_PAIRS or turn_rad < LEAST_TURN_RAD:
         raise InputError(_hardly_turned(turn_rad))
     _, offset_s, R = rough(track, turns, _OFFSETS_S)
-    return _judged(track, turns, align(track, turns, R, offset_s), camera, 0.0, turn_rad)
+    return _judged(CameraMount(align(track, turns, R, offset_s), camera, 0.0, 0.0, turn_rad, track, turns))
 
 
-def _aligned(
-    track: GyroTrack,
-    pairs: Sequence[PointPair],
-    t_zero_ns: int,
+def aligned(
+    recordings: Sequence[tuple[GyroTrack, Sequence[PointPair], int]],
     camera: CameraModel,
-    R: Matrix,
-    offset_s: float,
+    R_body_cam: Matrix,
+    offsets_s: Sequence[float],
+    *,
     focal_is_free: bool,
-) -> tuple[Alignment, Turns, CameraModel]:
-    """Return the alignment, with the turns made anew until the focal length that they were made with is the one found."""
+) -> tuple[Sequence[Alignment], Sequence[Turns], CameraModel]:
+    """Return the alignments, with the turns made anew until the focal length that they were made with is the one found.
+
+    Args:
+        recordings: Track, pairs and time zero of each.
+        camera: The lens.
+        R_body_cam: (3, 3) rough.
+        offsets_s: Rough, of each recording.
+        focal_is_free: Whether the lens's focal length is to be found.
+    """
     for _ in range(6):
-        turns = turns_of(pairs, t_zero_ns, camera, focal_is_free=focal_is_free)
-        found = align(track, turns, R, offset_s)
-        R, offset_s = found.R_body_cam, found.offset_s
-        camera = with_focal(camera, camera.fx_px * float(np.exp(found.log_focal)))
-        if abs(found.log_focal) < 1e-3:
+        turns = [turns_of(pairs, t_zero_ns, camera, focal_is_free=focal_is_free) for _, pairs, t_zero_ns in recordings]
+        found = align_all(
+            [(track, of) for (track, _, _), of in zip(recordings, turns, strict=True)], R_body_cam, offsets_s
+        )
+        R_body_cam, offsets_s = found[0].R_body_cam, [alignment.offset_s for alignment in found]
+        camera = with_focal(camera, camera.fx_px * float(np.exp(found[0].log_focal)))
+        if abs(found[0].log_focal) < 1e-3:
             break
     return found, turns, camera
 
@@ -184,24 +210,11 @@ def _hardly_turned(turn_rad: float) -> str:
     )
 
 
-def _judged(
-    track: GyroTrack, turns: Turns, found: Alignment, camera: CameraModel, readout: float, turn_rad: float
-) -> CameraMount:
-    sizes = np.linalg.norm(turns.vectors_rad, axis=1)
+def _judged(mount: CameraMount) -> CameraMount:
+    found, sizes = mount.alignment, np.linalg.norm(mount.turns.vectors_rad, axis=1)
     if found.residual_rad > LARGEST_SHARE * float(np.median(sizes)) or abs(found.offset_s) > LARGEST_OFFSET_S:
         raise InputError(
             "Camera and gyroscope did not turn alike: are both on the same rig, is the picture stabilised by the camera "
             "(switch that off), or does something near fill the picture?"
         )
-    across = np.linalg.norm(turns.vectors_rad[:, :2], axis=1)
-    return CameraMount(
-        found,
-        camera,
-        found.log_focal_sigma * camera.fx_px,
-        readout,
-        len(sizes),
-        turn_rad,
-        float(np.sqrt(np.mean(across**2) / np.mean(sizes**2))),
-        track,
-        turns,
-    )
+    return mount

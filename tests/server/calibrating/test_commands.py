@@ -1,6 +1,7 @@
 """`agora calibrate` from recordings: what it finds, keeps, says and refuses."""
 
 import json
+from datetime import date
 from heapq import merge
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,8 @@ from typer.testing import CliRunner, Result
 from server.cli import app
 from tests.tracker.calibrate.board_video import BoardVideo, shown_around
 from tests.tracker.calibrate.board_walk import CAMERA, BoardWalk
+from tests.tracker.calibrate.pan_video import PanVideo
+from tests.tracker.calibrate.rig_motion import RigMotion
 from tests.tracker.calibrate.test_magnetometer import planted, readings, tumbled
 from tests.tracker.calibrate.test_rest import at_rest, held_by_a_hand
 from tests.walks import write_walk
@@ -21,9 +24,9 @@ from tracker.errors import InputError
 from tracker.geometry import wxyz_from_matrix
 from tracker.log_writer import LogWriter
 from tracker.measurements import GpsFix, Measurement
-from tracker.rig import CameraModel, Rig
+from tracker.rig import R_BODY_CAM_FORWARD, CameraModel, Rig
 from tracker.rig_file import RigFile, read_rig_file, write_rig_file
-from tracker.rig_sheets import GpsMountSheet
+from tracker.rig_sheets import CameraSheet, GpsMountSheet
 
 T_ZERO_NS = 1_790_000_000_000_000_000
 
@@ -114,6 +117,35 @@ def test_one_lively_recording_before_the_board_tells_lens_and_mount(tmp_path: Pa
     assert found["time_offset_s"] == pytest.approx(walk.offset_s, abs=0.003)
     R = walk.R_body_cam.T @ np.array(found["R_body_cam"])
     assert np.degrees(np.linalg.norm(rotations.log(np.array([wxyz_from_matrix(R)])))) < 0.2
+
+
+def test_recordings_of_different_pictures_or_without_a_gyroscope_are_named(board_log: Path, tmp_path: Path) -> None:
+    motion = RigMotion(3, 0.5)
+    video = PanVideo(CameraModel(320, 240, 300.0, 300.0, 159.5, 119.5), motion, R_BODY_CAM_FORWARD, 0.0)
+    small = write(tmp_path / "small.mcap", list(motion.samples(T_ZERO_NS)), list(video.frames(T_ZERO_NS)))
+    sizes = run("rig", "--log", board_log, "--log", small, "--rig", tmp_path / "rig.toml").exception
+    assert isinstance(sizes, InputError)
+    assert "walk.mcap has pictures of 640 x 480 px, but small.mcap of 320 x 240" in str(sizes)
+    blind = write(tmp_path / "blind.mcap", list(motion.samples(T_ZERO_NS)))
+    pictures = run("rig", "--log", small, "--log", blind, "--rig", tmp_path / "rig.toml").exception
+    assert isinstance(pictures, InputError)
+    assert str(pictures).startswith("blind.mcap: There are no pictures in this")
+
+
+def test_two_recordings_before_the_board_are_one_calibration(board_log: Path, tmp_path: Path) -> None:
+    rig, report = tmp_path / "rig.toml", tmp_path / "report"
+    known = CameraSheet.of(
+        CAMERA, date=date(2026, 1, 1), method="board", rms_px=0.1, focal_sigma_px=0.1, views=40, coverage=0.9
+    )
+    write_rig_file(rig, RigFile(camera=known))
+    found = told(run("rig", "--log", board_log, "--log", board_log, "--rig", rig, "--json", "--report", report))
+    assert (found["by"], found["kept"]) == ("board", ["camera_mount"])
+    assert [one["name"] for one in found["recordings"]] == ["walk.mcap"] * 2
+    for one in found["recordings"]:
+        assert one["time_offset_s"] == pytest.approx(BoardWalk(4).offset_s, abs=0.003)
+    assert found["time_offset_s"] == pytest.approx(found["recordings"][0]["time_offset_s"], abs=1e-6)
+    assert found["rotation_apart_deg"] == 0.0
+    assert {file.name for file in report.glob("*.svg")} == {"turning.svg", "turning-2.svg"}
 
 
 def test_photographs_in_a_folder_do_as_well(tmp_path: Path) -> None:
