@@ -23,8 +23,8 @@ from tracker.measurements import (
 from tracker.precise import observations
 from tracker.precise.activity import Activity
 from tracker.precise.compass import Compass
-from tracker.precise.error_model import ProcessNoise
 from tracker.precise.error_state import Correction, ErrorState
+from tracker.precise.evenness import Evenness
 from tracker.precise.eye import Eye
 from tracker.precise.gap import LEVEL_NOISE, AfterGap, drift, has_lost_heading, is_gap
 from tracker.precise.ground import EyeHeight, standing_z_m
@@ -71,13 +71,13 @@ class Engine:
         self._last: ImuSample | None = None
         self._counted_ns = 0
         self._after_gap: AfterGap | None = None
-        self._noise = ProcessNoise(settings)
         self.hypotheses: Hypotheses | None = None
         """None until the first half second of inertial samples."""
         self._began_ns: int | None = None
         self.fix_ns: int | None = None
         """Of the last fix taken in."""
         self._insistence = Insistence(settings.insist)
+        self._evenness = Evenness(settings)
         self._compass_due_ns = 0
         self._suspicion = 0.0
         self.heading_found = False
@@ -156,7 +156,7 @@ class Engine:
         before, in_gap = self.best.nav, in_gap or (counted and is_gap(self._counted_ns, sample.t_ns))
         for filter_ in self.hypotheses.filters:
             if in_gap:
-                drift(filter_, self._noise, sample.t_ns)
+                drift(filter_, sample.t_ns)
             else:
                 filter_.advance(sample.t_ns, gyro, accel)
         self._landmarks.moved(before, self.best.nav)
@@ -256,8 +256,10 @@ class Engine:
             for filter_ in hypotheses.filters:
                 filter_.place(p, forget_receiver=False)
             self._find_heading()
-        white = 1.0 - sum(settings.gps_error_share)
-        noise = np.diag([max(white, 0.02) * s * s for s in sigma])
+        if self._evenness.take(fix.t_ns, p, sigma):
+            for filter_ in hypotheses.filters:
+                filter_.believe_receiver(self._evenness.errors)
+        noise = np.diag(self._evenness.white_share * np.square(sigma))
         self._note_way(p)
         done = hypotheses.correct(
             lambda f: f.correct(

@@ -37,8 +37,7 @@ class ProcessNoise:
         self._rates[BG] = settings.gyro_bias_walk_rad_s2_sqrt_hz**2
         self._rates[BA] = settings.accel_bias_walk_m_s3_sqrt_hz**2
         self._times_s = np.array([*np.repeat(settings.gps_error_s, 3), settings.magnetic_deviation_s])
-        shares = np.repeat(settings.gps_error_share, 3)
-        self._steady = np.array([*shares, settings.magnetic_deviation_rad**2])
+        self._steady = np.array([*np.repeat(settings.gps_error_share, 3), settings.magnetic_deviation_rad**2])
         self._dt_s = 0.0
         self._kept = np.ones(10)
 
@@ -47,6 +46,18 @@ class ProcessNoise:
         if dt_s != self._dt_s:
             self._dt_s, self._kept = dt_s, np.exp(-dt_s / self._times_s)
         return self._kept
+
+    @property
+    def receiver(self) -> Matrix:
+        """(2, 9): variances that the receiver's errors come to, in units of its stated variance, and how long they last, s."""
+        return np.array([self._steady[:9], self._times_s[:9]])
+
+    @receiver.setter
+    def receiver(self, shares_and_times: Matrix) -> None:
+        shares, times_s = shares_and_times
+        self._steady = np.array([*shares, self._steady[9]])
+        self._times_s = np.array([*times_s, self._times_s[9]])
+        self._dt_s = 0.0
 
     def added(self, dt_s: float) -> Matrix:
         """(34,) variances."""

@@ -87,7 +87,7 @@ class ErrorState:
         self.magnetic_rad = 0.0
         self.clones: list[Clone] = []
         self._gravity = gravity_m_s2
-        self._noise = ProcessNoise(settings)
+        self.noise = ProcessNoise(settings)
         self.restart_chunk()
 
     # -- prediction ---------------------------------------------------------------------------------------------------
@@ -118,17 +118,17 @@ class ErrorState:
         cov[_INERTIAL, _INERTIAL] = Phi @ cov[_INERTIAL, _INERTIAL] @ Phi.T
         cov[_INERTIAL, 15:] = Phi @ cov[_INERTIAL, 15:]
         cov[15:, _INERTIAL] = cov[_INERTIAL, 15:].T
-        keep = self._noise.kept(dt)
+        keep = self.noise.kept(dt)
         cov[FORGETTING, :] *= keep[:, None]
         cov[:, FORGETTING] *= keep
-        cov[_DIAGONAL] += self._noise.added(dt)
+        cov[_DIAGONAL] += self.noise.added(dt)
         turned = log_rotation(multiply(end.wxyz_site_body, conjugate(start.wxyz_site_body)))
         self._lean(R_mean, turned, gained, dt)
         index = np.arange(3)
         cov[6 + index, 6 + index] += (self.settings.gyro_scale * hypot(*turned)) ** 2
         shaken = np.array(end.v_m_s) - np.array(start.v_m_s)
         cov[3 + index, 3 + index] += (self.settings.accel_scale * float(np.linalg.norm(shaken))) ** 2
-        half = 0.5 * self._noise.velocity * dt * dt
+        half = 0.5 * self.noise.velocity * dt * dt
         cov[_P_V] += half
         cov[_V_P] += half
         self.gps_error = keep[:9] * self.gps_error
@@ -293,15 +293,32 @@ class ErrorState:
         if forget_receiver:
             cov[GPS_ERROR, :] = 0.0
             cov[:, GPS_ERROR] = 0.0
-            cov[GPS_ERROR, GPS_ERROR] = np.diag(np.repeat(self.settings.gps_error_share, 3))
+            cov[GPS_ERROR, GPS_ERROR] = np.diag(self.noise.receiver[0])
             self.gps_error = np.zeros(9)
         self.nav = self.nav._replace(p_m=p_site_m)
         self.restart_chunk()
+
+    def believe_receiver(self, shares_and_times: Matrix) -> None:
+        """Take the receiver's errors to be of these (see `ProcessNoise.receiver`) from now on; what is known of now is slow then.
+
+        Were the shorter errors only made smaller, those of now would fade within seconds, and with them the doubt of the place.
+        """
+        self.settle()
+        all_slow = np.zeros((9, 9))
+        all_slow[6:] = np.hstack([np.eye(3)] * 3)
+        cov = self.covariance
+        cov[GPS_ERROR, :] = all_slow @ cov[GPS_ERROR, :]
+        cov[:, GPS_ERROR] = cov[:, GPS_ERROR] @ all_slow.T
+        quick = np.arange(GPS_ERROR.start, GPS_ERROR.start + 6)
+        cov[quick, quick] = shares_and_times[0, :6]
+        self.gps_error = all_slow @ self.gps_error
+        self.noise.receiver = shares_and_times
 
     def copied(self) -> "ErrorState":
         """Return a copy that shares nothing that changes."""
         self.settle()
         copy = ErrorState(self.settings, self.nav, self.biases, self.covariance.copy(), self._gravity)
+        copy.noise.receiver = self.noise.receiver
         copy.gps_error, copy.magnetic_rad, copy.clones = self.gps_error.copy(), self.magnetic_rad, list(self.clones)
         return copy
 

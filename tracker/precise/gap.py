@@ -12,7 +12,7 @@ import numpy as np
 
 from tracker.geometry import rotate
 from tracker.measurements import ImuSample, Matrix
-from tracker.precise.error_model import FORGETTING, THETA, P, ProcessNoise, V
+from tracker.precise.error_model import FORGETTING, THETA, P, V
 from tracker.precise.error_state import ErrorState, Observation
 from tracker.precise.navigation import Navigation
 
@@ -49,7 +49,7 @@ def doubt(dt_s: float) -> tuple[float, float, float, float]:
     return v * dt_s**2 / 3.0, v, _TILT_RAD**2 * dt_s, _TURN_RAD**2 * dt_s
 
 
-def drift(state: ErrorState, noise: ProcessNoise, t_ns: int) -> None:
+def drift(state: ErrorState, t_ns: int) -> None:
     """Carry a filter on to t_ns, in a gap."""
     state.settle()
     dt_s = (t_ns - state.nav.t_ns) * 1e-9
@@ -58,10 +58,10 @@ def drift(state: ErrorState, noise: ProcessNoise, t_ns: int) -> None:
     cov = state.covariance
     cov[P, :] += dt_s * cov[V, :]
     cov[:, P] += dt_s * cov[:, V]
-    keep = noise.kept(dt_s)
+    keep = state.noise.kept(dt_s)
     cov[FORGETTING, :] *= keep[:, None]
     cov[:, FORGETTING] *= keep
-    added = noise.added(dt_s)
+    added = state.noise.added(dt_s)
     p, v, tilt, turn = doubt(dt_s)
     added[P], added[V], added[THETA] = p, v, (tilt, tilt, turn)
     index = np.arange(len(added))

@@ -10,7 +10,7 @@ from tracker.geometry import wrap_rad, wxyz_from_matrix, yaw_of
 from tracker.measurements import ImuSample, MagSample, Measurement
 from tracker.precise.activity import Activity
 from tracker.precise.compass import Compass
-from tracker.precise.error_model import ProcessNoise, start_covariance
+from tracker.precise.error_model import start_covariance
 from tracker.precise.error_state import ErrorState
 from tracker.precise.gap import AfterGap, doubt, drift, held, is_gap
 from tracker.precise.navigation import Biases, Navigation
@@ -56,17 +56,16 @@ def _state() -> ErrorState:
 def test_drift_holds_velocity_and_attitude_and_doubts_them_more_with_time() -> None:
     """In one step or in many: a random walk."""
     one, many = _state(), _state()
-    noise = ProcessNoise(PreciseSettings())
-    drift(one, noise, 2 * S)
+    drift(one, 2 * S)
     for t_ns in range(S // 4, 2 * S + 1, S // 4):
-        drift(many, noise, t_ns)
+        drift(many, t_ns)
     assert one.nav == held(_state().nav, 2 * S) == Navigation(2 * S, (3.0, 2.0, 3.0), (1.0, 0.0, 0.0), LEVEL)
     np.testing.assert_allclose(one.covariance, many.covariance, rtol=1e-9, atol=1e-9)
     gained = np.diag(one.covariance) - np.diag(_state().covariance)
     _, v, tilt, turn = doubt(2.0)
     np.testing.assert_allclose(gained[3:9], [v, v, v, tilt, tilt, turn], rtol=1e-3)
     before = one.covariance.copy()
-    drift(one, noise, S)
+    drift(one, S)
     np.testing.assert_array_equal(one.covariance, before)
 
 
