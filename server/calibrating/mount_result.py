@@ -20,8 +20,6 @@ LARGEST_OFFSET_SIGMA_S = 0.005
 LARGEST_FOCAL_SCATTER = 0.02
 #: Share of the turning that must be across the line of sight for a focal length.
 LEAST_ACROSS = 0.6
-#: Recordings whose focal lengths lie this many of their errors apart do not agree.
-_STRAINED = 2.0
 
 By = Literal["board", "flow"]
 
@@ -114,9 +112,9 @@ def _focal_words(mount: CommonMount, free: CommonMount, names: Sequence[str]) ->
             for name, alone, one in zip(names, free.alone, free.mounts, strict=True)
         )
         agree = (
-            "further apart than their turns' errors allow, which is in the ± above"
-            if free.focal_strain > _STRAINED
-            else "no further apart than their turns' errors allow"
+            "further apart than their errors allow, which is in the ± above"
+            if free.disagrees
+            else "no further apart than their turns and the camera's own way allow"
         )
         words.append(f"The recordings alone say: {each}; {agree}.")
     return words

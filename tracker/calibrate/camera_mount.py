@@ -77,8 +77,8 @@ class CameraMount:
 def with_untold(focal_scatter_px: float, camera: CameraModel) -> float:
     """Return the standard error of a focal length of which the turns tell so much; zero where they were not asked for it.
 
-    What no turn tells does not average out over turns, nor over recordings: it is the same gyroscope, the same lens, and somebody
-    who holds the rig at the same arm's length.
+    What no turn tells does not average out over turns, nor over recordings: it is the same gyroscope and the same lens, and the
+    camera's own way, another in every place, makes the focal length too long in most, since who holds the rig stands behind it.
     """
     return float(np.hypot(focal_scatter_px, _UNTOLD_SHARE * camera.fx_px)) if focal_scatter_px else 0.0
 

@@ -7,13 +7,15 @@ import numpy as np
 
 from tracker import rotations
 from tracker.calibrate.alignment import align_all
-from tracker.calibrate.camera_mount import CameraMount, aligned, with_untold
+from tracker.calibrate.camera_mount import OWN_WAY_SHARE, CameraMount, aligned, with_untold
 from tracker.geometry import wxyz_from_matrix
 from tracker.measurements import Matrix
 from tracker.rig import CameraModel
 
 #: Chi-square of three numbers that one time in a thousand is exceeded by chance.
 _SURPRISE = 16.27
+#: Focal lengths that lie this many of their errors apart disagree.
+_STRAINED = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,11 +54,22 @@ class CommonMount:
 
     @property
     def focal_strain(self) -> float:
-        """How far apart the recordings alone find the focal length, in their errors (Birge's ratio): about 1 where they agree."""
-        return _strain(
-            np.array([mount.camera.fx_px for mount in self.alone]),
-            np.array([mount.focal_scatter_px for mount in self.alone]),
-        )
+        """How far apart the recordings alone find the focal length, in their errors (Birge's ratio): about 1 where they agree.
+
+        The camera's own way is one of these errors: it is another in every place.
+        """
+        focals_px = np.array([mount.camera.fx_px for mount in self.alone])
+        scatters_px = np.array([mount.focal_scatter_px for mount in self.alone])
+        if len(focals_px) < 2 or not np.all(scatters_px > 0.0):
+            return 0.0
+        weights = 1.0 / (scatters_px**2 + (OWN_WAY_SHARE * focals_px) ** 2)
+        off_px = focals_px - np.average(focals_px, weights=weights)
+        return float(np.sqrt(np.sum(weights * off_px**2) / (len(focals_px) - 1)))
+
+    @property
+    def disagrees(self) -> bool:
+        """Whether the recordings are further apart about the focal length than their errors allow."""
+        return self.focal_strain > _STRAINED
 
     @property
     def across(self) -> float:
@@ -123,8 +136,8 @@ def common_mount(alone: Sequence[CameraMount]) -> CommonMount:
     """Return what recordings tell together, from what each tells alone.
 
     Rotation and focal length are found from all turns at once, each with the weight that the errors of its recording give it.
-    Recordings that disagree about the focal length more than their turns do leave its standard error larger by as much; and what
-    no turn tells apart from it stays (`with_untold`).
+    Recordings that disagree about the focal length more than their errors allow leave its standard error as large as they are
+    apart; and what no turn tells apart from it stays (`with_untold`).
 
     Args:
         alone: At least one; either all with the focal length found, or all with the same lens known.
@@ -149,7 +162,10 @@ def common_mount(alone: Sequence[CameraMount]) -> CommonMount:
     )
     if not focal_is_free:
         return common
-    scatter_px = found[0].log_focal_sigma * camera.fx_px * max(1.0, common.focal_strain)
+    scatter_px = found[0].log_focal_sigma * camera.fx_px
+    if common.disagrees:
+        apart_px = float(np.std([mount.camera.fx_px for mount in alone], ddof=1))
+        scatter_px = float(np.hypot(scatter_px, apart_px / np.sqrt(len(alone))))
     return replace(common, mounts=[replace(mount, focal_scatter_px=scatter_px) for mount in common.mounts])
 
 
@@ -164,14 +180,6 @@ def _rough_rotation(alone: Sequence[CameraMount]) -> Matrix:
         seen.append(mount.turns.vectors_rad[known])
     p = np.concatenate(seen)
     return rotations.nearest_rotation(np.concatenate(felt), p, np.ones(len(p)))
-
-
-def _strain(values: Matrix, sigmas: Matrix) -> float:
-    """Return the square root of chi-square over its degrees of freedom; 0 of a single value, or of values that are exact."""
-    if len(values) < 2 or not np.all(sigmas > 0.0):
-        return 0.0
-    mean = np.average(values, weights=sigmas**-2.0)
-    return float(np.sqrt(np.sum(((values - mean) / sigmas) ** 2) / (len(values) - 1)))
 
 
 def _surprising_rad(first: CameraMount, second: CameraMount) -> float:

@@ -68,13 +68,15 @@ def test_a_camera_that_was_moved_between_recordings_is_noticed_and_one_that_was_
 
 
 def test_recordings_that_disagree_leave_the_focal_length_as_uncertain_as_they_are_apart() -> None:
-    """A zoom between them: 420 and 440 px cannot be known within less than half of that."""
-    near, far = recording(4, (0.3, 0.45, 0.7), 0.0, 420.0), recording(5, (0.3, 0.45, 0.7), 0.0, 440.0)
-    common = common_mount([near, far])
-    assert near.camera.fx_px < common.camera.fx_px < far.camera.fx_px
-    assert common.focal_strain > 4.0
-    apart_px = far.camera.fx_px - near.camera.fx_px
-    assert 0.35 * apart_px < common.focal_scatter_px < 0.75 * apart_px
+    """A zoom between them: 400 and 440 px cannot be known within less than half of that; 427 and 433 may be one and the same."""
+    lively = (0.3, 0.45, 0.7)
+    zoomed = common_mount([recording(4, lively, 0.0, 400.0), recording(5, lively, 0.0, 440.0)])
+    assert zoomed.disagrees
+    assert 400.0 < zoomed.camera.fx_px < 440.0
+    assert zoomed.focal_scatter_px == pytest.approx(20.0, rel=0.1)
+    alike = common_mount([recording(4, lively, 0.0, 427.0), recording(5, lively, 0.0, 433.0)])
+    assert not alike.disagrees
+    assert alike.focal_scatter_px < 1.5
 
 
 def test_clocks_that_differ_from_start_to_start_are_no_better_known_than_that() -> None:
@@ -84,11 +86,11 @@ def test_clocks_that_differ_from_start_to_start_are_no_better_known_than_that() 
 
 
 def test_the_pan_and_the_roll_of_a_phone_together(shared: Path) -> None:
-    """../shared/data/README.md, traps 3 and 4: together they tell the mount, and that they disagree about the focal length."""
+    """../shared/data/README.md, traps 3 and 4: together they tell the mount, and a focal length that may be 478 px."""
     pan, roll = (of_log(shared / "data" / f"transformflow-{name}.mcap") for name in ("1606", "avonhead-1611"))
     common = common_mount([pan, roll])
     assert roll.camera.fx_px < common.camera.fx_px < pan.camera.fx_px
-    assert common.focal_strain > 1.0
+    assert 1.0 < common.focal_strain < 2.0
     assert common.camera.fx_px == pytest.approx(478.0, abs=1.96 * common.focal_sigma_px)
     assert common.focal_sigma_px / common.camera.fx_px < 0.035
     stated = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
