@@ -144,10 +144,10 @@ class ArPage:
             assert monotonic() < deadline, f"picture {frame_id} was not acknowledged; sent {self.sent[-5:]}"
             self.page.wait_for_timeout(20)
 
-    def pixels(self) -> Pixels:
-        """Return the composite in pixels of the stored picture, (480, 640, 3), red first."""
-        width, height = SIZE_PX
-        raw = np.frombuffer(base64.b64decode(self.ask(_READ, list(SIZE_PX))), np.uint8)
+    def pixels(self, size_px: tuple[int, int] = SIZE_PX) -> Pixels:
+        """Return the composite in pixels of the stored picture, (height, width, 3), red first."""
+        width, height = size_px
+        raw = np.frombuffer(base64.b64decode(self.ask(_READ, list(size_px))), np.uint8)
         return np.ascontiguousarray(raw.reshape(height, width, 4)[..., :3])
 
 

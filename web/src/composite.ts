@@ -6,6 +6,7 @@
  */
 
 import { Color, NoToneMapping, WebGLRenderer, WebGLRenderTarget } from "three";
+import type { Picture } from "./decoding";
 import { Drawing } from "./drawing";
 import type { Matrix4 } from "./frames";
 import { type Lens, sameLens } from "./lens";
@@ -28,7 +29,7 @@ export interface View {
 }
 
 export interface Shot extends View {
-  readonly bitmap: ImageBitmap;
+  readonly picture: Picture;
   readonly quarterTurns: number;
 }
 
@@ -116,7 +117,7 @@ export class Composite {
   draw(shot: Shot): void {
     this.shot = shot;
     this.useLens(shot.lens);
-    this.sheet.show(shot.bitmap);
+    this.sheet.show(shot.picture);
     this.part();
     for (const eye of this.asides_m.keys()) this.drawEye(shot, eye);
     this.renderer.setViewport(0, 0, ...this.size);

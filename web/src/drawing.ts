@@ -78,7 +78,6 @@ export class Drawing {
     renderer.info.reset();
     renderer.setRenderTarget(target);
     renderer.setClearColor(0x000000, 0);
-    renderer.clear();
     renderer.render(square.scene, camera);
     renderer.shadowMap.needsUpdate = false; // three leaves it where no light throws shadows
     renderer.setClearColor(BACKGROUND, 1);

@@ -1,7 +1,9 @@
 /** How the model is made to belong to the picture: the sun's place, the picture's own brightness, and as much effort as it keeps up with. */
 
 import type { Composite } from "./composite";
-import { gainFor, Matching, meanLight } from "./exposure";
+import type { Picture } from "./decoding";
+import { gainFor, Matching } from "./exposure";
+import { Meter } from "./meter";
 import type { Square } from "./model";
 import { type Effort, Quality } from "./quality";
 import type { Origin } from "./site";
@@ -14,7 +16,6 @@ export type SunWish = "now" | "ancient" | number;
 /** Shadows are drawn anew when the sun has moved by as much as it is wide. */
 const MOVED_RAD = (0.5 * Math.PI) / 180;
 const METERED_EVERY_MS = 200;
-const METERED_PX = [32, 24] as const;
 const TIMED_EVERY = 4;
 /** A picture whose drawing takes less of its time than this was late by its decoding: drawing less would not help. */
 const DRAWN_SHARE = 1 / 3;
@@ -32,7 +33,7 @@ export class Look {
   private message: FrameMessage | null = null;
   private readonly quality: Quality;
   private readonly matching = new Matching();
-  private readonly meter = new OffscreenCanvas(...METERED_PX).getContext("2d", { willReadFrequently: true });
+  private readonly meter = new Meter();
   private metered_ms = Number.NEGATIVE_INFINITY;
   private count = 0;
   private readonly arrivals_ms: number[] = [];
@@ -78,13 +79,13 @@ export class Look {
   }
 
   /** Prepare for the picture that is drawn next. */
-  before(message: FrameMessage, bitmap: ImageBitmap, now_ms: number): void {
+  before(message: FrameMessage, picture: Picture, now_ms: number): void {
     this.message = message;
     this.light();
-    if (now_ms - this.metered_ms < METERED_EVERY_MS || !this.meter) return;
+    if (now_ms - this.metered_ms < METERED_EVERY_MS) return;
     this.metered_ms = now_ms;
-    this.meter.drawImage(bitmap, 0, 0, ...METERED_PX);
-    const mean = meanLight(this.meter.getImageData(0, 0, ...METERED_PX).data);
+    const mean = this.meter.lightOf(picture);
+    if (!mean) return;
     const real = this.sunFor("now");
     this.composite.gain = this.matching.take(gainFor(mean, real ? lightOf(real) / USUAL_LIGHT : 1), now_ms);
   }

@@ -13,7 +13,14 @@ import {
   UniformsUtils,
 } from "three";
 
+/** What a shadow takes away is told apart only where shadows are drawn: each value that goes from corner to pixel takes time. */
+const SHADOWED = /* glsl */ `
+  #if defined(USE_SHADOWMAP) && NUM_DIR_LIGHT_SHADOWS > 0
+    #define SHADOWED
+  #endif`;
+
 const VERTEX = /* glsl */ `
+  ${SHADOWED}
   #include <common>
   #include <batching_pars_vertex>
   #include <color_pars_vertex>
@@ -21,7 +28,10 @@ const VERTEX = /* glsl */ `
   #include <shadowmap_pars_vertex>
   #include <fog_pars_vertex>
   uniform vec3 base; uniform float grey;
-  varying vec2 vAt; varying vec3 vSky; varying vec3 vSun; varying vec3 vTint;
+  varying vec2 vAt; varying vec3 vSky;
+  #ifdef SHADOWED
+    varying vec3 vSun;
+  #endif
   void main() {
     #include <color_vertex>
     // all of a batch lies in the world's own axes (batches.ts): to look its matrices up would take as long as all the rest
@@ -39,36 +49,50 @@ const VERTEX = /* glsl */ `
     #include <fog_vertex>
     vec3 upright = normalize(transformedNormal);
     vAt = uv;
-    vTint = mix(base * vColor.rgb, vColor.rgb, grey);
-    vSky = ambientLightColor;
+    vec3 tint = mix(base * vColor.rgb, vColor.rgb, grey);
+    vec3 sky = ambientLightColor;
     #if NUM_HEMI_LIGHTS > 0
-      vSky += getHemisphereLightIrradiance(hemisphereLights[0], upright);
+      sky += getHemisphereLightIrradiance(hemisphereLights[0], upright);
     #endif
-    vSky = vSky * RECIPROCAL_PI + 0.25 * grey;
-    vSun = vec3(0.0);
+    sky = sky * RECIPROCAL_PI + 0.25 * grey;
+    vec3 sun = vec3(0.0);
     #if NUM_DIR_LIGHTS > 0
-      vSun = directionalLights[0].color * (max(dot(upright, directionalLights[0].direction), 0.0) * RECIPROCAL_PI);
+      sun = directionalLights[0].color * (max(dot(upright, directionalLights[0].direction), 0.0) * RECIPROCAL_PI);
+    #endif
+    #ifdef SHADOWED
+      vSky = tint * sky;
+      vSun = tint * sun;
+    #else
+      vSky = tint * (sky + sun);
     #endif
   }`;
 
 const FRAGMENT = /* glsl */ `
+  ${SHADOWED}
   #include <common>
   #include <lights_pars_begin>
   #include <shadowmap_pars_fragment>
   #include <fog_pars_fragment>
   uniform sampler2D map; uniform float grey; uniform float share; uniform float shade;
-  varying vec2 vAt; varying vec3 vSky; varying vec3 vSun; varying vec3 vTint;
+  varying vec2 vAt; varying vec3 vSky;
+  #ifdef SHADOWED
+    varying vec3 vSun;
+  #endif
   void main() {
     vec3 colour = texture2D(map, vAt).rgb;
-    colour = mix(colour, vec3(0.5 + 0.5 * sqrt(dot(colour, vec3(0.2126, 0.7152, 0.0722)))), grey) * vTint;
-    float seen = 1.0;
-    #if defined(USE_SHADOWMAP) && NUM_DIR_LIGHT_SHADOWS > 0
+    colour = mix(colour, vec3(0.5 + 0.5 * sqrt(dot(colour, vec3(0.2126, 0.7152, 0.0722)))), grey);
+    float covers = share;
+    #ifdef SHADOWED
+      float seen = 1.0;
       vec3 at = vDirectionalShadowCoord[0].xyz;
       at.z += directionalLightShadows[0].shadowBias;
       if (at.x > 0.0 && at.x < 1.0 && at.y > 0.0 && at.y < 1.0 && at.z < 1.0) seen = texture(directionalShadowMap[0], at);
+      covers += (1.0 - share) * shade * (1.0 - seen);
+      colour *= vSky + vSun * seen;
+    #else
+      colour *= vSky;
     #endif
-    float covers = share + (1.0 - share) * shade * (1.0 - seen);
-    gl_FragColor = vec4(colour * (vSky + vSun * seen) * share, covers);
+    gl_FragColor = vec4(colour * share, covers);
     #include <tonemapping_fragment>
     #include <colorspace_fragment>
     #include <fog_fragment>

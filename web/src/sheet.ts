@@ -8,20 +8,19 @@
 import {
   BufferAttribute,
   BufferGeometry,
-  LinearFilter,
   Mesh,
   NoBlending,
-  NoColorSpace,
   OrthographicCamera,
   Scene,
   ShaderMaterial,
-  Texture,
   Vector2,
   Vector3,
   Vector4,
   type WebGLRenderer,
 } from "three";
+import type { Picture } from "./decoding";
 import type { Drawing } from "./drawing";
+import { Film, SEEN } from "./film";
 import type { Matrix4 } from "./frames";
 import type { Pair } from "./lens";
 import type { Lookup } from "./lookup";
@@ -41,7 +40,8 @@ const VERTEX = /* glsl */ `
   }`;
 
 const FRAGMENT = /* glsl */ `
-  uniform sampler2D picture; uniform sampler2D drawing; uniform sampler2D edges;
+  ${SEEN}
+  uniform sampler2D drawing; uniform sampler2D edges;
   uniform float past; uniform float share; uniform vec3 gain; uniform float outline; uniform vec2 texel;
   uniform vec4 window; uniform vec3 upCam; uniform float eyeHeight; uniform float clearTo;
   varying vec2 vPlace; varying vec2 vDrawn; varying float vKnown;
@@ -78,7 +78,7 @@ const FRAGMENT = /* glsl */ `
     }
   #endif
   void main() {
-    vec3 colour = texture2D(picture, vPlace).rgb;
+    vec3 colour = seen(vPlace);
     #ifdef MODELLED
       if (vKnown > 0.999) {
         float left = past * kept();
@@ -108,21 +108,16 @@ export interface Cover {
 }
 
 export class Sheet {
-  private readonly picture = new Texture();
+  private readonly film = new Film();
   private readonly flat = new OrthographicCamera();
   private readonly scene = new Scene();
   private readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
   private window = new Vector4();
 
   constructor(private readonly drawing: Drawing) {
-    const { picture } = this;
-    picture.colorSpace = NoColorSpace;
-    picture.flipY = false;
-    picture.generateMipmaps = false;
-    picture.minFilter = LinearFilter;
     const material = new ShaderMaterial({
       uniforms: {
-        picture: { value: picture },
+        ...this.film.uniforms,
         drawing: { value: drawing.target.texture },
         edges: { value: drawing.soft.texture },
         gain: { value: new Vector3(1, 1, 1) },
@@ -151,18 +146,13 @@ export class Sheet {
   }
 
   /** Show this picture from now on. */
-  show(bitmap: ImageBitmap): void {
-    const { picture } = this;
-    if (picture.image === bitmap) return;
-    // a texture of another size cannot take the new picture in place
-    if ((picture.image as ImageBitmap | null)?.width !== bitmap.width) picture.dispose();
-    picture.image = bitmap;
-    picture.needsUpdate = true;
+  show(picture: Picture): void {
+    this.film.show(picture);
   }
 
   /** Send the picture anew, after the browser has taken the graphics away. */
   resend(): void {
-    this.picture.needsUpdate = true;
+    this.film.resend();
   }
 
   /** Bend the model by this lookup from now on. */
@@ -177,6 +167,7 @@ export class Sheet {
   /** Lay the model over the picture in this way; null: the picture alone. */
   cover(cover: Cover | null): void {
     this.compile({
+      PLANAR: this.film.isPlanar,
       MODELLED: cover !== null,
       SOFT: cover?.isSoft ?? false,
       OUTLINED: (cover?.laying.outline ?? 0) > 0,

@@ -1,6 +1,7 @@
 /** Pictures of a walk on a canvas, each with the square drawn over it by the pose of that same picture. */
 
 import { Composite } from "./composite";
+import { Decoder, type Picture } from "./decoding";
 import type { Standpoint } from "./describe";
 import { headingOf, invertRigid, transform, type Vector3 } from "./frames";
 import { watchInterruptions } from "./interruptions";
@@ -38,7 +39,7 @@ export interface Audience {
 
 interface Waiting {
   readonly message: FrameMessage;
-  readonly bitmap: ImageBitmap;
+  readonly picture: Picture;
   readonly arrived_ms: number;
   /** What is laid over it, where that is drawn already. */
   readonly overlay: Overlay | null;
@@ -65,7 +66,8 @@ export class Viewer {
   private decoding = false;
   /** Whether nothing was drawn since the screen was. */
   private isFree = false;
-  private shown: ImageBitmap | null = null;
+  private readonly decoder = new Decoder();
+  private shown: Picture | null = null;
 
   constructor(
     canvas: HTMLCanvasElement,
@@ -189,15 +191,14 @@ export class Viewer {
       this.newest = null;
       try {
         const message = decodeFrame(bytes);
-        const blob = new Blob([message.jpeg], { type: "image/jpeg" });
-        const decoded = createImageBitmap(blob, { colorSpaceConversion: "none", premultiplyAlpha: "none" });
+        const decoded = this.decoder.decode(message.jpeg);
         const overlay = this.drawAhead(message);
-        const bitmap = await decoded;
+        const picture = await decoded;
         if (this.waiting) {
           this.audience.done(this.waiting.message.frameId);
-          this.waiting.bitmap.close();
+          this.waiting.picture.close();
         }
-        this.waiting = { message, bitmap, arrived_ms, overlay };
+        this.waiting = { message, picture, arrived_ms, overlay };
         // at once, but one for each time that the screen is drawn: more would only queue up
         if (this.isFree || overlay) this.drawWaiting(performance.now());
         this.isFree = false;
@@ -225,7 +226,7 @@ export class Viewer {
       return;
     }
     this.audience.done(next.message.frameId);
-    next.bitmap.close();
+    next.picture.close();
     this.lastPicture_ms = now_ms;
   }
 
@@ -243,15 +244,15 @@ export class Viewer {
     return this.overlays.take(message, pose?.frameId === message.frameId ? pose : null);
   }
 
-  private draw({ message, bitmap, arrived_ms, overlay }: Waiting, now_ms: number): void {
+  private draw({ message, picture, arrived_ms, overlay }: Waiting, now_ms: number): void {
     this.frame = message;
     const { pose, locked } = this;
     this.overlay = overlay ?? this.overlayOf(message);
     this.composite.laying = this.overlays.aligning ? seenThrough(this.overlay.laying) : this.overlay.laying;
-    this.look.before(message, bitmap, now_ms);
+    this.look.before(message, picture, now_ms);
     const began_ms = performance.now();
     this.composite.draw({
-      bitmap,
+      picture,
       lens: message.lens,
       quarterTurns: message.quarterTurns,
       T_site_cam: this.overlay.T_site_cam,
@@ -259,7 +260,7 @@ export class Viewer {
     });
     this.look.after(began_ms, arrived_ms);
     this.shown?.close();
-    this.shown = bitmap;
+    this.shown = picture;
     document.body.classList.remove("empty");
     this.framesDrawn += 1;
     if (locked) this.posesDrawn += 1;
