@@ -13,7 +13,11 @@ LONGEST_GAP_S = 0.3
 
 
 class GyroTrack:
-    """The rig's turning, from samples in body axes, with rates taken as running straight from sample to sample."""
+    """The rig's turning, from samples in body axes, with rates taken as cubic from sample to sample.
+
+    A chord cuts the crest of every swing: taken as straight, rates of 16 to 32 samples a second make a hand's turns too small by
+    0.1 to 4 per cent, and a focal length that is found from them too long by as much.
+    """
 
     def __init__(self, times_s: Matrix, rates_rad_s: Matrix) -> None:
         """Integrate.
@@ -24,7 +28,10 @@ class GyroTrack:
         """
         self.times_s, self.rates_rad_s = times_s, rates_rad_s
         steps_s = np.diff(times_s)
-        mean = 0.5 * (rates_rad_s[1:] + rates_rad_s[:-1])
+        self._slopes_rad_s2 = _slopes(times_s, rates_rad_s)
+        # what Hermite's cubic comes to over a whole step
+        bend = (self._slopes_rad_s2[:-1] - self._slopes_rad_s2[1:]) * (steps_s / 12.0)[:, None]
+        mean = 0.5 * (rates_rad_s[1:] + rates_rad_s[:-1]) + bend
         # the second-order term of Magnus' series: rates that turn within a step
         cross = np.cross(rates_rad_s[:-1], rates_rad_s[1:]) * (steps_s**2 / 12.0)[:, None]
         turns = rotations.exp(mean * steps_s[:, None] + cross)
@@ -70,8 +77,18 @@ class GyroTrack:
 
     def _at(self, t_s: Matrix) -> Matrix:
         k = np.clip(np.searchsorted(self.times_s, t_s, side="right") - 1, 0, len(self.times_s) - 2)
-        into_s = (t_s - self.times_s[k])[:, None]
-        slope = (self.rates_rad_s[k + 1] - self.rates_rad_s[k]) / self._gaps_s[k][:, None]
-        return rotations.multiply(
-            self._attitudes[k], rotations.exp(self.rates_rad_s[k] * into_s + 0.5 * slope * into_s**2)
-        )
+        step_s, into_s = self._gaps_s[k][:, None], (t_s - self.times_s[k])[:, None]
+        x = into_s / step_s
+        begin, end = self._slopes_rad_s2[k], self._slopes_rad_s2[k + 1]
+        rise = (self.rates_rad_s[k + 1] - self.rates_rad_s[k]) / step_s
+        # the integral of Hermite's cubic, in Newton's form
+        second, third = rise - begin, begin + end - 2.0 * rise
+        turned = self.rates_rad_s[k] + into_s * (begin / 2.0 + x * (second / 3.0 + (x / 4.0 - 1.0 / 3.0) * third))
+        return rotations.multiply(self._attitudes[k], rotations.exp(turned * into_s))
+
+
+def _slopes(times_s: Matrix, rates_rad_s: Matrix) -> Matrix:
+    """Return (N, 3) the rates' change at each sample, between its neighbours: samples close together make no noise of it."""
+    inner = (rates_rad_s[2:] - rates_rad_s[:-2]) / (times_s[2:] - times_s[:-2])[:, None]
+    ends = np.diff(rates_rad_s[[0, 1, -2, -1]], axis=0)[[0, 2]] / np.diff(times_s[[0, 1, -2, -1]])[[0, 2], None]
+    return np.concatenate([ends[:1], inner, ends[1:]])

@@ -166,13 +166,13 @@ def of_log(path: Path, every: int = 1) -> CameraMount:
 
 
 def test_a_roll_about_the_line_of_sight_is_known_for_one(shared: Path) -> None:
-    """The other log is a roll before things far off: 454 px, five per cent less than the pans before near walls told.
+    """The other log, a roll before things far off: 446 px, which is what the maker's figures say of the whole sensor.
 
-    There the camera goes about its holder at arm's length, so that what is near moves further than by turning. The standard error
-    knows of that.
+    These are 4.1 mm before 3264 pixels of 1.4 um, and as much as 33 mm before a film: 430 to 458 px. Pans before near walls tell
+    more, since the camera goes about its holder at arm's length there; the standard error knows of that.
     """
     mount = of_log(shared / "data" / "transformflow-avonhead-1611.mcap")
-    assert mount.camera.fx_px == pytest.approx(478.0, abs=1.96 * mount.focal_sigma_px)
+    assert 430.0 < mount.camera.fx_px < 458.0
     assert 0.03 < mount.focal_sigma_px / mount.camera.fx_px < 0.035
     assert mount.across < 0.4
     assert mount.readout_s == pytest.approx(0.024, abs=0.004)

@@ -33,6 +33,31 @@ def test_few_samples_tell_nearly_what_many_tell(seed: int, a: float, span: float
     assert float(np.linalg.norm(off)) < 5e-4
 
 
+@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("rate_hz", [16.0, 32.0])
+def test_a_phone_of_few_samples_a_second_tells_the_whole_turn(seed: int, rate_hz: float) -> None:
+    """Not a share less, as straight lines from sample to sample would: at 16 Hz these lose 0.5 % of a hand's turns."""
+    fine = RigMotion(seed).track
+    times_s = np.arange(-0.9, 10.9, 1.0 / rate_hz)
+    rates = np.stack([np.interp(times_s, fine.times_s, fine.rates_rad_s[:, k]) for k in range(3)], axis=1)
+    begin = np.linspace(0.0, 9.8, 300)
+    whole = rotations.log(fine.between(begin, begin + 0.14))
+    told = rotations.log(GyroTrack(times_s, rates).between(begin, begin + 0.14))
+    assert float(np.sum(told * whole) / np.sum(whole**2)) == pytest.approx(1.0, abs=5e-4)
+
+
+def test_two_samples_close_together_make_no_more_noise_than_one() -> None:
+    """Units that deliver in pairs: a slope by the two alone would carry their noise through the step that follows."""
+    rng = np.random.default_rng(1)
+    paired_s = np.sort(np.concatenate([np.arange(0.0, 20.0, 0.02), np.arange(0.001, 20.0, 0.02)]))
+    off = []
+    for times_s in (paired_s, np.arange(0.0, 20.0, 0.02)):
+        noisy = GyroTrack(times_s, rng.normal(0.0, 0.01, (len(times_s), 3)))
+        begin = np.arange(0.5, 19.0, 0.1)
+        off.append(float(np.std(rotations.log(noisy.between(begin, begin + 0.1)))))
+    assert off[0] < 1.05 * off[1]
+
+
 @given(st.lists(st.tuples(*[st.floats(-3.1, 3.1)] * 3), min_size=1, max_size=8))
 def test_rotations_agree_with_scipy(vectors: list[tuple[float, float, float]]) -> None:
     q = rotations.exp(np.array(vectors))
