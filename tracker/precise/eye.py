@@ -5,8 +5,8 @@ from math import sqrt
 import numpy as np
 
 from tracker.measurements import Matrix, Vector3, VisualMotion
-from tracker.precise import parallax
-from tracker.precise.error_model import SIZE
+from tracker.precise import observations, parallax
+from tracker.precise.error_model import SIZE, THETA
 from tracker.precise.error_state import Correction, ErrorState
 from tracker.precise.hypotheses import Hypotheses
 from tracker.precise.settings import PreciseSettings
@@ -22,6 +22,9 @@ _AT_ONCE = 14
 #: How well features can be followed through these pictures is learned: so much of each new one's misfit, up to so many times
 #: the variance that is believed. Blur, a rolling shutter and a stamp that is off all look like that.
 _LEARNED, _WORST = 0.1, 25.0
+#: Where it is less sure than this how the rig has turned since the last picture, as after a gap, the turn that two pictures show is
+#: taken first, for slopes at poses that are so far off are wrong; and its error, rad.
+_UNSURE_RAD, _TURN_RAD = 0.1, 0.02
 
 
 class Eye:
@@ -62,6 +65,8 @@ class Eye:
         while self.is_behind:
             self.go_on(hypotheses)
         is_held = any(clone.t_ns == motion.t_key_ns for clone in hypotheses.best.clones)
+        if is_held:
+            hypotheses.correct(lambda f: self._turn(f, motion))
         self.hold(hypotheses, motion.t_ns)
         xy = self._tracks.take(motion.tracks, motion.t_key_ns, motion.t_ns, is_held=is_held)
         count = seen_in(xy).sum(axis=1)
@@ -79,6 +84,19 @@ class Eye:
         xy, self._left = self._left[:_AT_ONCE], self._left[_AT_ONCE:]
         if not hypotheses.are_many:
             hypotheses.correct(lambda f: self._constrain(f, xy))
+
+    def _turn(self, filter_: ErrorState, motion: VisualMotion) -> Correction | None:
+        """Correct by how the rig has turned since a held picture; None where that is known well enough."""
+        filter_.settle()
+        held = next(i for i, clone in enumerate(filter_.clones) if clone.t_ns == motion.t_key_ns)
+        at, cov = slice(SIZE + 6 * held + 3, SIZE + 6 * held + 6), filter_.covariance
+        unsure = cov[THETA, THETA] + cov[at, at] - cov[THETA, at] - cov[at, THETA]
+        if np.diag(unsure).max() < _UNSURE_RAD**2:
+            return None
+        R_held_now = self._R_body_cam @ motion.R_key_cam @ self._R_body_cam.T
+        return filter_.correct(
+            *observations.turn(filter_, held, R_held_now), _TURN_RAD**2 * np.eye(3), is_relative=True
+        )
 
     def _constrain(self, filter_: ErrorState, xy: Matrix) -> Correction | None:
         """Correct by features, (M, K, 2); None where they say nothing."""

@@ -1,7 +1,7 @@
 """Stretches without inertial samples: a plug that was loose, a device that began anew. Nobody knows what the rig did then.
 
 A head goes on as it went and looks where it looked, more or less: velocity and attitude are held, and the doubt about them grows
-with time as below. Pictures that were taken before, in and after the gap then tell how it has turned, as they always do; what they
+with time as below. Pictures that were taken before, in and after the gap then tell how it has turned, two by two; what they
 leave open, the first half second afterwards has to tell: gravity the tilt, and motion and compass the heading.
 """
 
@@ -19,7 +19,7 @@ from tracker.precise.navigation import Navigation
 #: The slowest units say something every 60 ms; after this long they have been away.
 GAP_NS = 200_000_000
 #: After a longer one the filter begins anew.
-LONGEST_GAP_NS = 5_000_000_000
+LONGEST_GAP_NS = 30_000_000_000
 #: What a walker's head does without being watched, standard deviations after a second, growing with the root of time.
 _TURN_RAD, _TILT_RAD, _SPEED_M_S = 0.6, 0.15, 1.0
 #: The mean specific force is taken over this long; a walker's steps leave so much of them in it.

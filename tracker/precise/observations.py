@@ -7,9 +7,9 @@ from math import atan2, hypot
 
 import numpy as np
 
-from tracker.geometry import rotate, wrap_rad
+from tracker.geometry import log, rotate, wrap_rad, wxyz_from_matrix
 from tracker.measurements import Matrix, Vector3
-from tracker.precise.error_model import BG, GPS_ERROR, MAGNETIC, THETA, P, V, skew
+from tracker.precise.error_model import BG, GPS_ERROR, MAGNETIC, SIZE, THETA, P, V, skew
 from tracker.precise.error_state import ErrorState, Observation
 
 _I3 = np.eye(3)
@@ -62,6 +62,14 @@ def magnetic_yaw(state: ErrorState, field_body_t: Vector3, declination_rad: floa
         (THETA, np.array([[by_tilt * x, by_tilt * y, 1.0]])),
         (slice(MAGNETIC, MAGNETIC + 1), np.array([[1.0]])),
     ]
+
+
+def turn(state: ErrorState, held: int, R_held_now: Matrix) -> Observation:
+    """A turn of the body, (3, 3), since a held pose."""
+    R_site_now = state.clones[held].R_site_body @ R_held_now
+    off_rad = log(wxyz_from_matrix(R_site_now @ state.R_site_body.T))
+    at = SIZE + 6 * held + 3
+    return np.array(off_rad), [(THETA, _I3), (slice(at, at + 3), -_I3)]
 
 
 def bearing(state: ErrorState, landmark_site_m: Vector3, direction_body: Vector3, lever_body_m: Vector3) -> Observation:

@@ -74,6 +74,13 @@ def _landmark(rng: Generator, state: ErrorState) -> Sensor:
     return lambda s: observations.bearing(s, point, (x, y, z), LEVER)
 
 
+def _pictures(rng: Generator, state: ErrorState) -> Sensor:
+    state.hold(1)
+    state.move(0.5 * rng.normal(size=len(state.covariance)))
+    R_held_now = state.clones[0].R_site_body.T @ state.R_site_body
+    return lambda s: observations.turn(s, 0, R_held_now)
+
+
 SENSORS: dict[str, Callable[[Generator, ErrorState], Sensor]] = {
     "gps_position": lambda rng, _: lambda s: observations.gps_position(s, (1.0, 2.0, 3.0), (2.0, 2.0, 4.0), LEVER),
     "gps_velocity": lambda rng, _: lambda s: observations.gps_velocity(s, (1.0, 2.0, 3.0), (0.1, 0.2, 0.3), LEVER),
@@ -83,6 +90,7 @@ SENSORS: dict[str, Callable[[Generator, ErrorState], Sensor]] = {
     "position": lambda rng, _: lambda s: observations.position(s, (1.0, 2.0, 3.0)),
     "magnetic_yaw": _magnetometer,
     "bearing": _landmark,
+    "turn": _pictures,
 }
 
 

@@ -100,7 +100,7 @@ def test_over_a_leap_of_the_clock_the_sensors_stay_known(
     estimator = begun()
     estimator.restore(learned.snapshot())
     later = [
-        replace(m, t_ns=m.t_ns + 60 * S, t_recv_ns=m.t_recv_ns + 60 * S)
+        replace(m, t_ns=m.t_ns + 120 * S, t_recv_ns=m.t_recv_ns + 120 * S)
         for m in measurements
         if isinstance(m, ImuSample) and m.t_ns < START_NS + S
     ]

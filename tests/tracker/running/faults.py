@@ -17,6 +17,8 @@ from tracker.simulate import START_NS
 from tracker.sources.source import SourceStatus
 
 LENGTH_S = 110.0
+#: Of the walk.
+SEED = 12
 TICK_NS = 50_000_000
 GPS, IMU, CAMERA = (GpsFix, GpsVelocity), (ImuSample, MagSample), (Frame, VisualMotion)
 Kinds = tuple[type, ...]
@@ -41,9 +43,9 @@ class Row:
 
 
 @cache
-def healthy(seconds: float = LENGTH_S) -> tuple[Measurement, ...]:
+def healthy(seed: int = SEED) -> tuple[Measurement, ...]:
     """Return the walk with nothing amiss."""
-    return tuple(live_stream(seconds))
+    return tuple(live_stream(LENGTH_S, seed))
 
 
 def at(t_s: float) -> int:
@@ -69,14 +71,15 @@ def run(
     gone: Mapping[str, tuple[float, float]] | None = None,
     name: str = "camera-gps-imu/precise",
     until_s: float = LENGTH_S,
+    seed: int = SEED,
 ) -> list[Row]:
-    """Let a core take a stream; `gone` says when each sensor's source finds no device."""
+    """Let a core take a stream of the walk of this seed; `gone` says when each sensor's source finds no device."""
     core, rows, due_ns = new_core(name, lambda measurement: None), [], START_NS
     for measurement in sorted(stream, key=lambda m: m.t_recv_ns):
         if measurement.t_recv_ns > at(until_s):
             break
         while measurement.t_recv_ns > due_ns:
-            rows.append(_row(core, due_ns, gone or {}))
+            rows.append(_row(core, due_ns, gone or {}, seed))
             due_ns += TICK_NS
         _take(core, measurement)
     return rows
@@ -92,7 +95,7 @@ def _take(core: WalkCore, measurement: Measurement) -> None:
         core.take(sensor_of(measurement), measurement, now_ns)
 
 
-def _row(core: WalkCore, now_ns: int, gone: Mapping[str, tuple[float, float]]) -> Row:
+def _row(core: WalkCore, now_ns: int, gone: Mapping[str, tuple[float, float]], seed: int) -> Row:
     t_s = (now_ns - START_NS) / S
     absent = SourceStatus(False, "it was pulled out: put it back")
     statuses = {name: absent for name, (from_s, to_s) in gone.items() if from_s <= t_s < to_s}
@@ -102,7 +105,7 @@ def _row(core: WalkCore, now_ns: int, gone: Mapping[str, tuple[float, float]]) -
     pose = core.pose(now_ns)
     if pose is None:
         return Row(t_s, states, sentences, False, np.inf, np.inf, 180.0, False)
-    truth = walk(LENGTH_S).at(np.array([now_ns]))
+    truth = walk(LENGTH_S, seed).at(np.array([now_ns]))
     (east, north, _), (x, y, _) = truth.p_m[0], pose.p_site_m
     yaw_rad = yaw_of(wxyz_from_matrix(truth.R_site_body[0]))
     off_deg = abs(degrees(wrap_rad(yaw_of(pose.wxyz_site_body) - yaw_rad)))
