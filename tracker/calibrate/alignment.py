@@ -3,8 +3,8 @@
 Several recordings of one rig share rotation and focal length; each has its own clocks and its own bias.
 
 The gyroscope's turns are compared with the pictures', q = R_body_cam p. What does not fit is laid to the gyroscope's side: its
-integral over uneven samples errs by far more than the median of a hundred followed points, and errors on the side that is
-multiplied (p, through the focal length) would make the focal length too short. Numpy only.
+integral over uneven samples errs by far more than the median of a hundred followed points. So its errors pull the focal length,
+which is on the side of p, to neither side; errors of p make it longer, but are small. Numpy only.
 """
 
 from collections.abc import Sequence
