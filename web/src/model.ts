@@ -28,13 +28,15 @@ import type { Thing } from "./thing";
 const UNTOLD = new Color(0.62, 0.62, 0.6);
 
 /** How it is drawn. */
-type Drawn = Pick<Effort, "plain" | "shadows" | "occluders" | "finest">;
+type Drawn = Pick<Effort, "plain" | "shadows" | "occluders" | "landscape" | "finest">;
 /** Where nobody chooses. */
-const ALL: Drawn = { plain: false, shadows: true, occluders: true, finest: 0 };
+const ALL: Drawn = { plain: false, shadows: true, occluders: true, landscape: true, finest: 0 };
 
 /** All that changes its level together: a monument, or a piece of ground. */
 interface Group {
   readonly box: Box3;
+  /** Whether it is no monument, nor part of one. */
+  readonly isLandscape: boolean;
   readonly levels: Map<number, Thing[]>;
   level: number | null;
   variant: string | null;
@@ -131,7 +133,8 @@ export class Square {
     let changed = false;
     for (const group of this.groups.values()) {
       const wanted = levelAt(group.box.distanceToPoint(eye), this.reach_m, group.level);
-      const level = bestOf(Math.max(this.effort.finest, wanted), [...group.levels.keys()]);
+      const isShown = this.effort.landscape || !group.isLandscape;
+      const level = isShown ? bestOf(Math.max(this.effort.finest, wanted), [...group.levels.keys()]) : null;
       if (level === group.level) continue;
       group.level = level;
       showGroup(group);
@@ -275,6 +278,7 @@ export class Square {
       this.bounds.union(thing.box);
       const group: Group = this.groups.get(thing.group) ?? {
         box: new Box3(),
+        isLandscape: thing.monument === null,
         levels: new Map(),
         level: null,
         variant: null,

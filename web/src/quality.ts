@@ -17,6 +17,8 @@ export interface Effort {
   readonly occluders: boolean;
   /** Whether the edges of what hides the model are softened. */
   readonly soft: boolean;
+  /** Whether what is no monument is drawn: hills, and what grows on them. */
+  readonly landscape: boolean;
   /** The finest level of the model that is drawn near by: 0 is the finest of all. */
   readonly finest: number;
 }
@@ -26,23 +28,27 @@ export const COARSEST = Number.POSITIVE_INFINITY;
 
 const FIRST: Effort = {
   name: "first paint",
-  fineness: 0.4,
+  fineness: 0.36,
   samples: 0,
   plain: true,
   shadows: false,
   occluders: false,
   soft: false,
+  landscape: false,
   finest: COARSEST,
 };
+
+/** What all but the first paint have. */
+const WHOLE: Effort = { ...FIRST, occluders: true, landscape: true, fineness: 0.5 };
 
 /** From the cheapest to the best. */
 export const EFFORTS: readonly Effort[] = [
   FIRST,
-  { ...FIRST, name: "occluders", occluders: true, fineness: 0.5 },
-  { ...FIRST, name: "shadows", occluders: true, fineness: 0.5, shadows: true, finest: 1 },
-  { ...FIRST, name: "soft edges", occluders: true, shadows: true, finest: 1, soft: true, fineness: 0.75 },
-  { ...FIRST, name: "surfaces", occluders: true, shadows: true, finest: 1, soft: true, fineness: 1, plain: false },
-  { name: "full", fineness: 1, samples: 4, plain: false, shadows: true, occluders: true, soft: true, finest: 0 },
+  { ...WHOLE, name: "occluders" },
+  { ...WHOLE, name: "shadows", shadows: true, finest: 1 },
+  { ...WHOLE, name: "soft edges", shadows: true, finest: 1, soft: true, fineness: 0.75 },
+  { ...WHOLE, name: "surfaces", shadows: true, finest: 1, soft: true, fineness: 1, plain: false },
+  { ...WHOLE, name: "full", shadows: true, finest: 0, soft: true, fineness: 1, plain: false, samples: 4 },
 ];
 
 /** Slower than this, p50, a step is left: pictures come at 25 a second. */

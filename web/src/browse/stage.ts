@@ -394,7 +394,7 @@ export class Stage implements World {
   private dress(layer: Layer, plain: boolean): void {
     layer.plain = plain;
     this.isDressing = true;
-    layer.square.work({ plain, finest: plain ? COARSEST : 0, shadows: true, occluders: true });
+    layer.square.work({ plain, finest: plain ? COARSEST : 0, shadows: true, occluders: true, landscape: true });
     this.isDressing = false;
   }
 
