@@ -12,9 +12,10 @@ from server.settings import choose
 from tests.benchmarks.accuracy import site
 from tests.benchmarks.accuracy.document import write_document
 from tests.benchmarks.accuracy.logs import DATA, logs
+from tests.benchmarks.accuracy.redrawn import draws
 from tests.benchmarks.accuracy.scenarios import SCENARIOS
 from tests.benchmarks.accuracy.study import FOLDER, SEEDS, study
-from tests.benchmarks.accuracy.tables import print_logs, print_study
+from tests.benchmarks.accuracy.tables import print_draws, print_logs, print_study
 
 STEPS = ("study", "logs", "document")
 
@@ -30,10 +31,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
             chosen = {"scenarios": asked.scenarios, "wanted": asked.estimators, "settings": settings}
             print_study(study(asked.out / "study.json", asked.seeds, asked.jobs, **chosen)["summary"], console)
         if asked.only in (None, "logs"):
-            found = logs(asked.out / "logs.json", asked.logs, asked.jobs, wanted=asked.estimators, settings=settings)
-            print_logs(found, console)
+            chosen = {"wanted": asked.estimators, "settings": settings}
+            print_logs(logs(asked.out / "logs.json", asked.logs, asked.jobs, **chosen), console)
+            print_draws(draws(asked.out / "draws.json", asked.logs, asked.jobs, **chosen), console)
         if asked.only == "document" or (asked.only is None and _is_whole(asked)):
-            for file in write_document(asked.out / "study.json", asked.out / "logs.json"):
+            for file in write_document(*(asked.out / f"{name}.json" for name in ("study", "logs", "draws"))):
                 console.print(f"{file}", soft_wrap=True)
     finally:
         site.close()

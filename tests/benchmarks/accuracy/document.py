@@ -12,7 +12,7 @@ from tests.benchmarks.accuracy.goals import BOTH, CAMERA, GOALS, GPS_IMU
 from tests.benchmarks.accuracy.plots import goals_figure, logs_figure, seeds_figure
 from tests.benchmarks.accuracy.scenarios import SCENARIOS
 from tests.benchmarks.accuracy.study import RIVALLED
-from tests.benchmarks.accuracy.tables import COLUMNS, LOG_COLUMNS, SPECIAL, cell, span
+from tests.benchmarks.accuracy.tables import COLUMNS, DRAW_COLUMNS, LOG_COLUMNS, SPECIAL, cell, draw_rows, span
 from tracker.score import Figures
 
 DOCUMENT = ROOT / "docs" / "accuracy.md"
@@ -52,27 +52,30 @@ _BAND = (
 )
 
 
-def write_document(study: Path, logs: Path, path: Path = DOCUMENT) -> list[Path]:
+def write_document(study: Path, logs: Path, draws: Path, path: Path = DOCUMENT) -> list[Path]:
     """Write the document and its figures; return what was written.
 
     Args:
         study: JSON that `study` wrote.
         logs: JSON that `logs` wrote.
+        draws: JSON that `draws` wrote.
         path: The Markdown file; figures go into a folder beside it.
     """
     found = json.loads(study.read_text(encoding="utf-8"))
     recorded = json.loads(logs.read_text(encoding="utf-8")) if logs.is_file() else None
-    return write_markdown(compose(found, recorded), path, FOLDER)
+    redrawn = json.loads(draws.read_text(encoding="utf-8"))["rows"] if draws.is_file() else []
+    return write_markdown(compose(found, recorded, redrawn), path, FOLDER)
 
 
-def compose(study: Figures, logs: Figures | None) -> Document:
-    """Return the document of a study, and of recorded walks where there were any."""
+def compose(study: Figures, logs: Figures | None, draws: Sequence[Figures] = ()) -> Document:
+    """Return the document of a study, of recorded walks where there were any, and of these with other draws of their receiver."""
     seeds, summary = study["seeds"], study["summary"]
     blocks: list[Block] = [
         *_asked(summary["goals"]),
         *_beside(study),
         *_scenarios(summary["medians"]),
         *(_recorded(logs) if logs is not None else ()),
+        *(_redrawn(draws) if draws else ()),
         Heading("How it was measured"),
         Text(_METHOD.format(first=seeds[0], last=seeds[-1], count=len(seeds))),
         Text(_BAND),
@@ -199,6 +202,23 @@ def _recorded(logs: Figures) -> list[Block]:
             )
         ),
         Grid("recorded-walks", "All recorded walks.", ("log", "estimator", *(c[0] for c in columns)), body, left=2),
+    ]
+
+
+def _redrawn(draws: Sequence[Figures]) -> list[Block]:
+    return [
+        Heading("The same walks with other receivers"),
+        Text(
+            "The receiver of these recordings was simulated on their truth, with an error that lasts for a minute. Of a walk of "
+            "two minutes one draw of it says little: here it is drawn anew, again and again, and all else is as recorded."
+        ),
+        Grid(
+            "draws",
+            "Errors as ratios of the receiver's own, medians over draws.",
+            DRAW_COLUMNS,
+            tuple(draw_rows(draws)),
+            left=2,
+        ),
     ]
 
 

@@ -99,7 +99,7 @@ def log_case(path: Path, entrant: str, settings: Settings | None) -> Figures:
             raise
         return row | {"failed": " ".join(str(error).split())[:100]}
     usual = figures(result)
-    row |= _raw(result) | _against_truth(usual, entrant) | _course(result)
+    row |= raw_error(result) | _against_truth(usual, entrant) | _course(result)
     turns = log.name == FULL_TURN and entrant not in (RAW, *RIVALS)
     row["closing_deg"] = closing_deg(log, entrant, CLOSING_WAIT_S) if turns else None
     return row
@@ -120,8 +120,8 @@ def _rival(log: Log, name: str) -> Run:
     return result
 
 
-def _raw(result: Run) -> Figures:
-    """The receiver's own error at the stamps of its fixes, with and without its mean; None without truth or receiver."""
+def raw_error(result: Run) -> Figures:
+    """Return the receiver's own error at the stamps of its fixes, with and without its mean; None without truth or receiver."""
     nothing = {"raw_m": None, "raw_debiased_m": None, "raw_furthest_m": None}
     if not result.fixes or not score.known_parts(result.truth).position:
         return nothing

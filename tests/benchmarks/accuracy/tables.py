@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from rich.console import Console
 from rich.table import Table
 
+from tests.benchmarks.accuracy.redrawn import medians
 from tracker.score import Figures
 
 #: Heading, figure, factor and format of each column of the medians.
@@ -63,6 +64,9 @@ LOG_COLUMNS = (
 )
 
 
+DRAW_COLUMNS = ("log", "estimator", "draws", "/raw", "95 %", "nearer than raw", "de-b. /raw")
+
+
 def print_logs(found: Figures, console: Console) -> None:
     """Print the rows of the logs, then what is asked."""
     table = Table("log", "estimator", *(column[0] for column in LOG_COLUMNS))
@@ -81,6 +85,31 @@ def print_logs(found: Figures, console: Console) -> None:
     console.print(goals)
     for log, estimator in found["summary"]["not_played"]:
         console.print(f"{log} did not play through with {estimator}.", style="yellow")
+
+
+def print_draws(rows: Sequence[Figures], console: Console) -> None:
+    """Print what other draws of the receiver's error make of recorded walks."""
+    table = Table(*DRAW_COLUMNS)
+    for row in draw_rows(rows):
+        table.add_row(*row)
+    if rows:
+        console.print(table)
+
+
+def draw_rows(rows: Sequence[Figures]) -> list[tuple[str, ...]]:
+    """Return the cells of each log and entrant."""
+    return [
+        (
+            row["log"],
+            row["estimator"],
+            f"{row['draws']}",
+            f"{row['ratio']:.2f}",
+            span(row["interval"]),
+            f"{row['nearer']}",
+            f"{row['debiased_ratio']:.2f}",
+        )
+        for row in medians(rows)
+    ]
 
 
 def goals_table(goals: Sequence[Figures]) -> Table:

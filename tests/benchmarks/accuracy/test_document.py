@@ -52,6 +52,16 @@ def test_recorded_walks_are_told_where_there_are_any() -> None:
     assert "| walk | gps-imu/precise | 2.00 | 3.00 |" in text
 
 
+def test_other_draws_of_a_receiver_are_told_as_ratios() -> None:
+    """Three draws: nearer than the receiver in two of them."""
+    draws = [
+        {"log": "walk", "estimator": GPS_IMU, "ate_m": ate, "raw_m": 2.0, "debiased_m": 0.5, "raw_debiased_m": 1.0}
+        for ate in (1.0, 1.6, 2.4)
+    ]
+    text = markdown(compose(_study(0.2), None, draws), "accuracy")
+    assert "| walk | gps-imu/precise | 3 | 0.80 | 0.5 to 1.2 | 2 | 0.50 |" in text
+
+
 def test_the_best_entrant_is_drawn_first() -> None:
     axes = seeds_figure({"worse": [1.0, 1.2], "better": [0.5, 0.6]}, "ratio", 0.9).axes[0]
     assert [label.get_text() for label in axes.get_yticklabels()] == ["better", "worse"]
