@@ -137,8 +137,8 @@ def test_speed_and_estimator_reach_the_rig(ar: ArPage, showing: Showing) -> None
 
 
 def test_a_refusal_is_shown_in_the_rigs_words(ar: ArPage) -> None:
-    ar.ask("document.querySelector('#seek').max = '99'")
-    ar.page.locator("#seek").fill("98")
+    # in one go: the page sets the walk's own end again with each message of its session
+    ar.ask("(() => { seek.max = '99'; seek.value = '98'; seek.dispatchEvent(new Event('change')); })()")
     reply = ar.replied("seek")
     assert not reply["ok"]
     ar.until("!document.querySelector('#toast').hidden")
