@@ -58,6 +58,11 @@ class Evenness:
         self._last: tuple[Timed, ...] = ()
         self._bends: deque[tuple[int, Bounds, Bounds]] = deque()
         self._error_m: float | None = None
+        self._believe_claims()
+
+    def _believe_claims(self) -> None:
+        settings = self._settings
+        self._error_m = None
         self.white_share = np.full(3, max(1.0 - sum(settings.gps_error_share), 0.02))
         """(3,) of the white noise."""
         self.errors = np.repeat([settings.gps_error_share, settings.gps_error_s], 3, axis=1)
@@ -86,14 +91,13 @@ class Evenness:
         if before_m is not None and _EVEN <= error_m / before_m <= _UNEVEN:
             return False
         stated = np.square(sigma_m)
-        usual = Evenness(settings)
-        self.white_share, self.errors, self._error_m = usual.white_share, usual.errors, None
+        self._believe_claims()
         if error_m >= _EVEN * sqrt(settings.gps_error_share[0] * max(stated[:2])):
             return before_m is not None
         self._error_m = error_m
         axes = (level, level, up)
         white = [max(axis.white_m2, _LEAST_WHITE_M**2) for axis in axes]
-        self.white_share = np.minimum(usual.white_share, white / stated)
+        self.white_share = np.minimum(self.white_share, white / stated)
         shares, times_s = (part.reshape(3, 3) for part in self.errors)
         for share, time_s, least_m in zip(shares, settings.gps_error_s, _LEAST_M, strict=False):
             share[:] = np.minimum(share, [max(axis.wander_m2(time_s), least_m**2) for axis in axes] / stated)

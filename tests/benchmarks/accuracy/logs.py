@@ -15,7 +15,7 @@ from tests.benchmarks.accuracy.figures import ATTITUDE_ONLY
 from tests.benchmarks.accuracy.goals import BOTH
 from tests.benchmarks.accuracy.log_goals import summary
 from tests.benchmarks.accuracy.raw import held_fixes
-from tests.benchmarks.accuracy.study import FOLDER, HERE, RIVALS, kind_of
+from tests.benchmarks.accuracy.study import FOLDER, HERE, RIVALS, is_wanted, kind_of
 from tracker import score
 from tracker.estimators import SENSORS, Settings, missing_sensors
 from tracker.evaluate import Run, figures, log_origin, run
@@ -75,7 +75,7 @@ def entrants(log: Log, wanted: Sequence[str] = ()) -> list[str]:
     """Return who can run on a log."""
     ours = [name for name in (*BOTH, *PAPER) if missing_sensors(name, log.info, log.rig) is None]
     others = [name for name in (RAW, *RIVALS) if log.info.counts["gps"] or name not in NEEDS_FIXES]
-    return [name for name in (*ours, *others) if not wanted or {name, *name.split("/")} & set(wanted)]
+    return [name for name in (*ours, *others) if is_wanted(name, wanted)]
 
 
 def key_of(log: Path, entrant: str, settings: Settings | None) -> str:

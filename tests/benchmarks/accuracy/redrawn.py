@@ -15,7 +15,7 @@ from server.paper.digits import write_figures
 from server.paper.tasks import Task, content_key, progress_bar, run_tasks
 from tests.benchmarks.accuracy.goals import GPS_IMU, interval
 from tests.benchmarks.accuracy.logs import DATA, key_of, raw_error
-from tests.benchmarks.accuracy.study import FOLDER
+from tests.benchmarks.accuracy.study import FOLDER, is_wanted
 from tracker import score
 from tracker.estimators import Settings
 from tracker.evaluate import Run, figures, follow, log_origin, make_pipeline
@@ -64,7 +64,7 @@ def draws(
         for name in logs
         if (data / f"{name}.mcap").is_file()
         for entrant in ESTIMATORS
-        if not wanted or {entrant, *entrant.split("/")} & set(wanted)
+        if is_wanted(entrant, wanted)
         for seed in seeds
     ]
     rows: list[Figures] = []
@@ -105,14 +105,16 @@ def received(log: Log, seed: int) -> list[Measurement]:
     return sorted([*others, *moved], key=lambda m: m.t_recv_ns)
 
 
-def errors_m(t_ns: NDArray[np.int64], seed: int) -> Matrix:
+def errors_m(
+    t_ns: NDArray[np.int64], seed: int, time_s: float = TIME_S, size_m: Matrix = SIZE_M, white_m: float = WHITE_M
+) -> Matrix:
     """Return (N, 3) errors of fixes at rising times: a first-order Gauss-Markov process and white noise."""
     rng = np.random.default_rng([seed, _STREAM])
-    found, slow, before_ns = [], rng.normal(size=3) * SIZE_M, int(t_ns[0])
+    found, slow, before_ns = [], rng.normal(size=3) * size_m, int(t_ns[0])
     for now_ns in t_ns.tolist():
-        keep = np.exp((before_ns - now_ns) * 1e-9 / TIME_S)
-        slow = keep * slow + np.sqrt(1.0 - keep**2) * rng.normal(size=3) * SIZE_M
-        found.append(slow + WHITE_M * rng.normal(size=3))
+        keep = np.exp((before_ns - now_ns) * 1e-9 / time_s)
+        slow = keep * slow + np.sqrt(1.0 - keep**2) * rng.normal(size=3) * size_m
+        found.append(slow + white_m * rng.normal(size=3))
         before_ns = now_ns
     return np.array(found)
 

@@ -47,7 +47,12 @@ def units(scenario: str, wanted: Sequence[str] = ()) -> list[str]:
     known = [*BOTH]
     known += [RAW] if scenario in COMPARED else []
     known += [*PAPER, *RIVALS] if scenario in RIVALLED else []
-    return [unit for unit in known if not wanted or {unit, *unit.split("/")} & set(wanted)]
+    return [unit for unit in known if is_wanted(unit, wanted)]
+
+
+def is_wanted(name: str, wanted: Sequence[str]) -> bool:
+    """Whether an entrant is chosen, by its name or by a part of it between slashes; all are where nothing is asked for."""
+    return not wanted or bool({name, *name.split("/")} & set(wanted))
 
 
 def study(

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.benchmarks.accuracy.redrawn import errors_m
 from tests.benchmarks.endurance import new_filter
 from tracker.measurements import Matrix, Vector3
 from tracker.precise.error_model import GPS_ERROR, P
@@ -16,17 +17,9 @@ SETTINGS = PreciseSettings()
 USUAL = Evenness(SETTINGS)
 
 
-def wandering(
-    rng: np.random.Generator, count: int, dt_s: float, time_s: float, sigma_m: Vector3, white_m: float
-) -> Matrix:
+def wandering(seed: int, count: int, dt_s: float, time_s: float, sigma_m: Vector3, white_m: float) -> Matrix:
     """Return (count, 3) places of a receiver that rests, whose error has a correlation time, and white noise."""
-    keep = np.exp(-dt_s / time_s)
-    error = rng.normal(size=3) * sigma_m
-    places = []
-    for _ in range(count):
-        error = keep * error + np.sqrt(1.0 - keep**2) * rng.normal(size=3) * sigma_m
-        places.append(error + white_m * rng.normal(size=3))
-    return np.array(places)
+    return errors_m(np.round(np.arange(count) * dt_s * S).astype(np.int64), seed, time_s, np.array(sigma_m), white_m)
 
 
 def told(evenness: Evenness, places: Matrix, dt_s: float, sigma_m: Vector3, from_s: float = 0.0) -> list[float]:
@@ -43,7 +36,7 @@ def told(evenness: Evenness, places: Matrix, dt_s: float, sigma_m: Vector3, from
 @given(st.integers(0, 2**32 - 1), st.sampled_from([0.25, 1.0]), st.floats(1.0, 10.0))
 def test_one_that_wanders_as_fast_as_it_claims_is_believed(seed: int, dt_s: float, sigma_m: float) -> None:
     evenness, sigma = Evenness(SETTINGS), (sigma_m, sigma_m, 2.0 * sigma_m)
-    places = wandering(np.random.default_rng(seed), 120, dt_s, 15.0, sigma, 0.25 * sigma_m)
+    places = wandering(seed, 120, dt_s, 15.0, sigma, 0.25 * sigma_m)
     assert told(evenness, places, dt_s, sigma) == []
     assert np.array_equal(evenness.errors, USUAL.errors)
     assert np.array_equal(evenness.white_share, USUAL.white_share)
@@ -54,7 +47,7 @@ def test_one_that_wanders_as_fast_as_it_claims_is_believed(seed: int, dt_s: floa
 def test_one_that_claims_metres_and_goes_evenly_errs_slowly(seed: int, dt_s: float) -> None:
     """The whole of its error stays what it claims, but most of it lasts."""
     evenness, sigma = Evenness(SETTINGS), (10.0, 8.0, 25.0)
-    places = wandering(np.random.default_rng(seed), 60, dt_s, 3600.0, sigma, 0.05)
+    places = wandering(seed, 60, dt_s, 3600.0, sigma, 0.05)
     first_s, *_ = told(evenness, places, dt_s, sigma)
     assert first_s < 14.0
     (shares, times_s), (usual, usual_s) = evenness.errors, USUAL.errors
@@ -74,10 +67,10 @@ def test_one_that_tells_the_same_again_tells_nothing() -> None:
 
 
 def test_one_that_no_longer_goes_evenly_is_believed_as_it_claims_again() -> None:
-    rng, sigma = np.random.default_rng(1), (10.0, 10.0, 20.0)
+    sigma = (10.0, 10.0, 20.0)
     evenness = Evenness(SETTINGS)
-    even = wandering(rng, 60, 1.0, 3600.0, sigma, 0.05)
-    uneven = even[-1] + wandering(rng, 90, 1.0, 15.0, sigma, 2.0)
+    even = wandering(1, 60, 1.0, 3600.0, sigma, 0.05)
+    uneven = even[-1] + wandering(2, 90, 1.0, 15.0, sigma, 2.0)
     assert len(told(evenness, even, 1.0, sigma)) == 1
     assert told(evenness, uneven, 1.0, sigma, from_s=60.0)
     assert np.array_equal(evenness.errors, USUAL.errors)
