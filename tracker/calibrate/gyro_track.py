@@ -15,8 +15,8 @@ LONGEST_GAP_S = 0.3
 class GyroTrack:
     """The rig's turning, from samples in body axes, with rates taken as cubic from sample to sample.
 
-    A chord cuts the crest of every swing: taken as straight, rates of 16 to 32 samples a second make a hand's turns too small by
-    0.1 to 4 per cent, and a focal length that is found from them too long by as much.
+    A chord cuts the crest of every swing: taken as straight, rates of 16 to 32 samples a second make a hand's turns too small, and
+    a focal length that is found from them too long by as much.
     """
 
     def __init__(self, times_s: Matrix, rates_rad_s: Matrix) -> None:
