@@ -132,12 +132,12 @@ class VisualMotion:
     is_keyframe: bool
     """The present picture becomes the next keyframe."""
     tracks: "VisualTracks | None" = None
-    """Of a picture that becomes a keyframe: where its features are in it, and where they were in the keyframe before."""
+    """Of a keyframe, and now and then of a picture between two: where its features are, and where in the keyframe before."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class VisualTracks:
-    """Features followed from one keyframe to the next, as rays on the plane z = 1 of the camera, lens undone."""
+    """Features followed from a keyframe to a later picture, as rays on the plane z = 1 of the camera, lens undone."""
 
     ids: NDArray[np.int64]
     """(N,) of each feature, the same from its first picture to its last."""

@@ -37,6 +37,8 @@ class VisionSettings:
     """ or it is this old,"""
     key_period_s: float = 0.25
     """ but not sooner than the paper's four a second, unless nothing else is left to track."""
+    told_period_s: float = 0.3
+    """So often, and with every keyframe, it is told where the features are."""
     stale_s: float = 0.8
     """Pictures further apart than this cannot be tracked across."""
 
@@ -57,6 +59,8 @@ class _Tracks:
     ids: NDArray[np.int64]
     """(N,) the same for a feature as long as it is followed."""
     next_id: int
+    told_ns: int
+    """When it was last told where the features are."""
 
     def narrowed(self, features: Features, kept: NDArray[np.bool_]) -> "_Tracks":
         """Return what is left of it, `features`, of which `kept` says which they were."""
@@ -100,7 +104,11 @@ class VisionFrontEnd:
         good = motion.inliers
         seen = tracks.narrowed(tracks.features.chosen(good), good)
         is_keyframe = self._is_due(seen, motion.parallax_px)
-        self._tracks = self._keyframe(view, seen) if is_keyframe else seen
+        is_told = is_keyframe or frame.t_ns - seen.told_ns >= self.settings.told_period_s * 1e9
+        if is_keyframe:
+            self._tracks = self._keyframe(view, seen)
+        else:
+            self._tracks = replace(seen, told_ns=frame.t_ns) if is_told else seen
         inliers = int(np.count_nonzero(good))
         if inliers < self.settings.least_inliers:
             return None
@@ -114,7 +122,7 @@ class VisionFrontEnd:
             inliers,
             motion.parallax_px,
             is_keyframe,
-            self._followed(seen) if is_keyframe else None,
+            self._followed(seen) if is_told else None,
         )
 
     def _followed(self, seen: _Tracks) -> VisualTracks:
@@ -157,7 +165,7 @@ class VisionFrontEnd:
         end = first + len(features) - len(kept)
         new = np.arange(first, end)
         ids = np.concatenate([tracks.ids, new]) if tracks is not None else new
-        return _Tracks(view, features, view.t_ns, bearings, len(features), ids, end)
+        return _Tracks(view, features, view.t_ns, bearings, len(features), ids, end, view.t_ns)
 
     def _motion(self, tracks: _Tracks, camera: CameraModel) -> _Motion:
         settings = self.settings

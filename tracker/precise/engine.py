@@ -291,7 +291,9 @@ class Engine:
         noise = np.diag([sigma**2, sigma**2, (1.5 * sigma) ** 2])
         done = hypotheses.correct(
             lambda f: f.correct(
-                *observations.gps_velocity(f, measured.v_enu_m_s, last.gyro_rad_s, self._lever_gps_m), noise
+                *observations.gps_velocity(f, measured.v_enu_m_s, last.gyro_rad_s, self._lever_gps_m),
+                noise,
+                gate_nis=self._settings.velocity_nis,
             )
         )
         if done is not None and self.heading_found:

@@ -155,6 +155,7 @@ class ErrorState:
         noise: Matrix,
         *,
         gated: bool = True,
+        gate_nis: float | None = None,
         tells_north: bool = True,
         is_relative: bool = False,
     ) -> Correction:
@@ -164,7 +165,8 @@ class ErrorState:
             residual: (m,) measured minus predicted.
             blocks: Columns of H that are not zero, each (m, width of the slice).
             noise: (m, m) covariance of the measurement.
-            gated: Whether what lies far out counts for less (Huber), and further out for nothing.
+            gated: Whether what lies far out counts for less, and further out for nothing.
+            gate_nis: What lies further out than this counts for less, and the less the further; None for the settings'.
             tells_north: Whether it may tell yaw, now and of what is held, and what is wrong with the gyroscope's z; else their
                 doubt is taken into account, and they stay as they are.
             is_relative: Whether it would be the same if all places and attitudes were turned as one (see `_turn_doubts`).
@@ -178,10 +180,11 @@ class ErrorState:
         PHt = cov @ H.T
         foreseen = H @ PHt
         nis = float(residual @ np.linalg.solve(foreseen + noise, residual)) / m
-        if gated and nis > self.settings.gate_nis:
+        gate_nis = gate_nis or self.settings.gate_nis
+        if gated and nis > gate_nis:
             if nis > self.settings.reject_nis:
                 return Correction(nis, -0.5 * m * self.settings.reject_nis, used=False)
-            noise = noise * (nis / self.settings.gate_nis) + foreseen * (nis / self.settings.gate_nis - 1.0)
+            noise = noise * (nis / gate_nis) + foreseen * (nis / gate_nis - 1.0)
         S = foreseen + noise
         K = np.asarray(np.linalg.solve(S, PHt.T).T, np.float64)
         if not tells_north:

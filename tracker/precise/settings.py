@@ -25,7 +25,7 @@ class PreciseSettings:
     """Standard deviation of the scales and leans of the gyroscope's axes, before anything was measured."""
     gyro_bias_walk_rad_s2_sqrt_hz: float = 5e-5
     """How fast the bias wanders."""
-    accel_bias_walk_m_s3_sqrt_hz: float = 5e-4
+    accel_bias_walk_m_s3_sqrt_hz: float = 2.5e-4
     """How fast the bias wanders."""
     gyro_bias_rad_s: float = 0.006
     """Standard deviation before anything was measured."""
@@ -49,6 +49,8 @@ class PreciseSettings:
     """Per dimension: what lies further out counts for less and less,"""
     reject_nis: float = 40.0
     """and beyond this for nothing."""
+    velocity_nis: float = 2.5
+    """`gate_nis` of a receiver's velocity: most of these err little, and some by many times as much."""
     insist: int = 5
     """So many refused fixes in a row are believed."""
     stride_sigma_m_s: float = 0.6
@@ -73,7 +75,7 @@ class PreciseSettings:
     """Error of a feature in a picture, at best."""
     feature_nis: float = 3.0
     """Per dimension: a feature that is further off slid along an outline, or moves by itself."""
-    feature_pictures: int = 8
+    feature_pictures: int = 12
     """A feature is followed over so many held pictures at most, and then has told what it can."""
     blend_s: float = 2.2
     """A correction moves what is shown with this time constant: a temple that jumps is worse than one that is off."""

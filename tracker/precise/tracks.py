@@ -25,9 +25,9 @@ class Tracks:
 
         Args:
             seen: The features.
-            t_key_ns: Of the picture before.
+            t_key_ns: Of the keyframe before, where they were seen as well.
             t_ns: Of this one.
-            is_held: Whether the pose of the picture before is held; where it is not, all begins here.
+            is_held: Whether the keyframe's pose is held; where it is not, all begins here.
 
         Returns:
             (M, K, 2): features that go on no longer, where they were seen in the pictures of `stamps`.

@@ -71,6 +71,26 @@ def test_what_is_relative_tells_nobody_which_way_all_of_it_lies() -> None:
     assert after == pytest.approx(before, abs=1e-9 * np.abs(before).max())
 
 
+def test_the_further_out_a_measurement_is_the_less_it_counts() -> None:
+    """To the gate a correction grows with what is measured, beyond it shrinks, and in the end there is none."""
+    per_m_s, gate_nis = _velocity_moved_by(0.01, None)[0] / 0.01, 2.5
+    for off_m_s, asked_nis in ((0.5, None), (0.5, gate_nis), (3.0, None), (3.0, gate_nis), (5.5, gate_nis)):
+        moved_m_s, nis = _velocity_moved_by(off_m_s, asked_nis)
+        counts = min(1.0, (asked_nis or SETTINGS.gate_nis) / nis)
+        assert moved_m_s == pytest.approx(counts * per_m_s * off_m_s, rel=1e-9), (off_m_s, asked_nis)
+    assert _velocity_moved_by(3.0, gate_nis)[0] > _velocity_moved_by(5.5, gate_nis)[0]
+    assert _velocity_moved_by(30.0, gate_nis)[0] == _velocity_moved_by(30.0, None)[0] == 0.0
+
+
+def _velocity_moved_by(off_m_s: float, gate_nis: float | None) -> tuple[float, float]:
+    """Return by how much a velocity that is off by so much moves the filter's, and its squared innovation per dimension."""
+    state = _state()
+    before, (residual, blocks) = state.nav.v_m_s[0], observations.velocity(state, (0.0, 0.0, 0.0))
+    off = np.array([off_m_s, 0.0, 0.0])
+    done = state.correct(off, blocks, 0.1 * np.eye(len(residual)), gate_nis=gate_nis)
+    return state.nav.v_m_s[0] - before, done.nis
+
+
 def _as_one(state: ErrorState) -> Matrix:
     """Return what the error is when everything is turned by a little about the origin, (n, 3)."""
     turn = np.zeros((len(state.covariance), 3))

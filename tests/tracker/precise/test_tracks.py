@@ -45,6 +45,16 @@ def test_a_feature_that_is_lost_or_seen_for_long_is_told() -> None:
     assert full.tolist() == [[6, 0], [6, 1], [6, 2], [6, 3]]
 
 
+def test_several_pictures_may_be_of_one_keyframe() -> None:
+    """The keyframe's look at a feature is told once with those at the pictures after it."""
+    tracks = Tracks(MOST)
+    assert len(tracks.take(looks(0, 1, [5, 6]), 0, 1, is_held=True)) == 0
+    assert len(tracks.take(looks(0, 2, [5, 6]), 0, 2, is_held=True)) == 0
+    lost, full = tracks.take(looks(2, 3, [6]), 2, 3, is_held=True)
+    assert lost[:3].tolist() == [[5, 0], [5, 1], [5, 2]]
+    assert full.tolist() == [[6, 0], [6, 1], [6, 2], [6, 3]]
+
+
 @pytest.mark.parametrize(("t_key", "is_held"), [(2, False), (1, True)])
 def test_where_the_picture_before_is_not_known_all_begins_anew(t_key: int, is_held: bool) -> None:
     tracks = Tracks(MOST)
