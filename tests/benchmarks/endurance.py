@@ -16,11 +16,12 @@ from tracker.geometry import rotate
 from tracker.measurements import Matrix, Vector3
 from tracker.precise import observations
 from tracker.precise.error_model import SIZE, start_covariance
-from tracker.precise.error_state import ErrorState, Observation
+from tracker.precise.error_state import ErrorState
 from tracker.precise.navigation import Biases, Navigation
 from tracker.precise.parallax import Cameras, constraint
 from tracker.precise.settings import PreciseSettings
 from tracker.precise.tracks import seen_in
+from tracker.precise.update import Observation
 from tracker.rig import R_BODY_CAM_FORWARD
 
 GRAVITY_M_S2 = 9.8

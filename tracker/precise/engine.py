@@ -6,7 +6,6 @@ from math import hypot, sqrt
 
 import numpy as np
 
-from tracker.fixes import variance_m2
 from tracker.geodesy import SiteFrame
 from tracker.geometry import wrap_rad, yaw_of
 from tracker.measurements import (
@@ -17,31 +16,28 @@ from tracker.measurements import (
     MagSample,
     Sighting,
     Standpoint,
-    Vector3,
     VisualMotion,
 )
 from tracker.precise import observations
 from tracker.precise.activity import Activity
 from tracker.precise.compass import Compass
-from tracker.precise.error_state import Correction, ErrorState
-from tracker.precise.evenness import Evenness
+from tracker.precise.error_state import ErrorState
 from tracker.precise.eye import Eye
 from tracker.precise.gap import LEVEL_NOISE, AfterGap, drift, has_lost_heading, is_gap
 from tracker.precise.ground import EyeHeight, standing_z_m
 from tracker.precise.hypotheses import Hypotheses
-from tracker.precise.insistence import Insistence
 from tracker.precise.landmarks import Landmarks
 from tracker.precise.memory import Memory
 from tracker.precise.navigation import mean, sample_between
+from tracker.precise.receiver import Receiver
 from tracker.precise.settings import PreciseSettings
 from tracker.precise.start import Start
 from tracker.precise.stride import Stride
 from tracker.precise.timeline import Keyframe, Timed
+from tracker.precise.update import Correction
 from tracker.rig import Rig
 
 _I3 = np.eye(3)
-#: Who has been so far from where the receiver was first has walked: then motion tells north.
-_WALKED_M = 6.0
 
 
 class Engine:
@@ -59,10 +55,9 @@ class Engine:
     ) -> None:
         self._eyes_z_m = eyes_z_m
         self._settings = settings
-        self._site = site
         self._eye = Eye(settings, rig)
         x, y, z = rig.T_body_gps[:3, 3].tolist()
-        self._lever_gps_m: Vector3 = (x, y, z)
+        self._receiver = Receiver(settings, site, (x, y, z))
         self._landmarks = Landmarks(self._eye.lever_m)
         self._compass = compass
         self._activity = Activity()
@@ -74,20 +69,14 @@ class Engine:
         self.hypotheses: Hypotheses | None = None
         """None until the first half second of inertial samples."""
         self._began_ns: int | None = None
-        self.fix_ns: int | None = None
-        """Of the last fix taken in."""
-        self._insistence = Insistence(settings.insist)
-        self._evenness = Evenness(settings)
         self._compass_due_ns = 0
         self._suspicion = 0.0
         self.heading_found = False
-        self._first_fix_m: Vector3 | None = None
-        self._has_walked = False
 
     @property
-    def _tells_north(self) -> bool:
-        """Whether standing and fixes may: of a rig that has not walked they would tell something, a little, again and again."""
-        return self._has_walked or float(self.best.covariance[8, 8]) < self._settings.heading_known_rad**2
+    def fix_ns(self) -> int | None:
+        """When the last fix taken in was made."""
+        return self._receiver.fix_ns
 
     @property
     def age_s(self) -> float:
@@ -219,14 +208,14 @@ class Engine:
                 lambda f: f.correct(
                     *observations.velocity(f, (0.0, 0.0, 0.0)),
                     sigma**2 * _I3,
-                    gated=not self._is_blind(t_ns),
-                    tells_north=self._tells_north,
+                    gated=not self._receiver.is_blind(t_ns),
+                    tells_north=self._receiver.may_tell_north(self.best),
                 )
             )
             if activity.is_still:
                 noise = settings.still_rate_sigma_rad_s**2 * _I3
                 hypotheses.correct(lambda f: f.correct(*observations.turn_rate(f, activity.gyro_mean_rad_s), noise))
-        elif self._is_blind(t_ns):
+        elif self._receiver.is_blind(t_ns):
             hypotheses.correct(self._go_on)
         else:
             self._stride.learn(activity.force_spread_m_s2, self.best.nav)
@@ -235,67 +224,28 @@ class Engine:
     def _go_on(self, filter_: ErrorState) -> Correction:
         seen, noise = self._stride.onward(self._activity.force_spread_m_s2, filter_, self._settings)
         # who looks where they do not go must not turn north; of a rig held in the hands nothing is known but that it stays
-        tells_north = self._tells_north and not self._stride.is_learned
+        tells_north = self._receiver.may_tell_north(self.best) and not self._stride.is_learned
         return filter_.correct(*seen, noise, gated=False, tells_north=tells_north)
-
-    def _is_blind(self, t_ns: int) -> bool:
-        """Whether the receiver has been silent for longer than its usual second."""
-        return self.fix_ns is None or t_ns - self.fix_ns > 2_500_000_000
 
     # -- receiver -----------------------------------------------------------------------------------------------------
 
     def _take_fix(self, fix: GpsFix) -> None:
-        hypotheses, settings = self.hypotheses, self._settings
+        hypotheses, receiver = self.hypotheses, self._receiver
         assert hypotheses is not None
-        p = self._site.site_from_geodetic(fix.lat_deg, fix.lon_deg, fix.h_ellipsoid_m)
-        var = variance_m2(fix, settings.gps_floor_m, settings.gps_sigma_m)
-        ex, ey, ez = (sqrt(v * settings.gps_inflation) for v in var)
-        sigma = (ex, ey, ez)
-        is_first = self.fix_ns is None
+        is_first = receiver.fix_ns is None
         if is_first:
-            for filter_ in hypotheses.filters:
-                filter_.place(p, forget_receiver=False)
+            receiver.place(hypotheses, fix)
             self._find_heading()
-        if self._evenness.take(fix.t_ns, p, sigma):
-            for filter_ in hypotheses.filters:
-                filter_.believe_receiver(self._evenness.errors)
-        noise = np.diag(self._evenness.white_share * np.square(sigma))
-        self._note_way(p)
-        done = hypotheses.correct(
-            lambda f: f.correct(
-                *observations.gps_position(f, p, sigma, self._lever_gps_m), noise, tells_north=self._tells_north
-            )
-        )
-        self.fix_ns = fix.t_ns
+        receiver.take_fix(hypotheses, fix)
         if is_first:
             self._stand_on_ground()  # before anything is shown: a first height that is off by metres would be seen sliding
         self._judge_heading()
-        if done is None or done.used:
-            self._insistence.accepted()
-        elif self._insistence.believes(fix.t_ns, p, self.best.nav.p_m, max(ex, ey)):
-            for filter_ in hypotheses.filters:
-                filter_.place(p)
-                filter_.correct(*observations.gps_position(filter_, p, sigma, self._lever_gps_m), noise)
-
-    def _note_way(self, p_site_m: Vector3) -> None:
-        self._first_fix_m = self._first_fix_m or p_site_m
-        x, y, _ = self._first_fix_m
-        self._has_walked |= hypot(p_site_m[0] - x, p_site_m[1] - y) > _WALKED_M
 
     def _take_velocity(self, measured: GpsVelocity) -> None:
         hypotheses, last = self.hypotheses, self._last
         assert hypotheses is not None
         assert last is not None
-        self._has_walked = True  # or stands, as far as can be told: a velocity is better evidence than a way
-        sigma = self._settings.gps_velocity_sigma_m_s
-        noise = np.diag([sigma**2, sigma**2, (1.5 * sigma) ** 2])
-        done = hypotheses.correct(
-            lambda f: f.correct(
-                *observations.gps_velocity(f, measured.v_enu_m_s, last.gyro_rad_s, self._lever_gps_m),
-                noise,
-                gate_nis=self._settings.velocity_nis,
-            )
-        )
+        done = self._receiver.take_velocity(hypotheses, measured, last.gyro_rad_s)
         if done is not None and self.heading_found:
             self._suspicion += 0.1 * (min(done.nis, 30.0) - self._suspicion)
             if self._suspicion > 8.0:

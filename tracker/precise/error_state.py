@@ -7,10 +7,9 @@ Reference:
     Roumeliotis and Burdick, Stochastic cloning, 2002.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from math import hypot, log, pi
-from typing import TypeAlias
+from math import hypot
 
 import numpy as np
 
@@ -35,6 +34,7 @@ from tracker.precise.error_model import (
 )
 from tracker.precise.navigation import Biases, Navigation, advance
 from tracker.precise.settings import PreciseSettings
+from tracker.precise.update import Blocks, Correction, Observation, dense, joseph, log_likelihood
 
 _INERTIAL, _MOTION = slice(0, 15), slice(0, 9)
 #: Of a position that is not known. The first fix then splits it with the receiver's error as it should be.
@@ -42,11 +42,6 @@ _UNKNOWN_M2 = 1e4
 #: Covariance is carried on in steps of about this long: attitude hardly turns within one.
 _CHUNK_S = 0.02
 
-
-Blocks: TypeAlias = Sequence[tuple[slice, Matrix]]
-"""Columns of H that are not zero, each (m, width of the slice)."""
-Observation: TypeAlias = tuple[Matrix, Blocks]
-"""Residual, measured minus predicted, (m,), and its H."""
 _ITERATIONS = 5
 #: Yaw, and the bias, scale and lean of the gyroscope's z.
 _NORTH = [THETA.stop - 1, BG.stop - 1, *range(GYRO_AXES.stop - 3, GYRO_AXES.stop)]
@@ -60,16 +55,6 @@ class Clone:
     p_m: Vector3
     R_site_body: Matrix
     wxyz_site_body: tuple[float, float, float, float]
-
-
-@dataclass(frozen=True)
-class Correction:
-    """What an update did."""
-
-    nis: float
-    """Squared innovation by its covariance, per dimension."""
-    log_likelihood: float
-    used: bool
 
 
 class ErrorState:
@@ -176,7 +161,7 @@ class ErrorState:
         """
         self.settle()
         m, cov = len(residual), self.covariance
-        H = _dense(blocks, m, len(cov))
+        H = dense(blocks, m, len(cov))
         PHt = cov @ H.T
         foreseen = H @ PHt
         nis = float(residual @ np.linalg.solve(foreseen + noise, residual)) / m
@@ -190,11 +175,11 @@ class ErrorState:
         if not tells_north:
             K[_NORTH] = 0.0
             K[SIZE + 5 :: 6] = 0.0
-        self.covariance, error = _joseph(cov, K, H, noise), K @ residual
+        self.covariance, error = joseph(cov, K, H, noise), K @ residual
         if is_relative:
             self._turn_doubts(error)
         self.move(error)
-        return Correction(nis, _log_likelihood(min(nis, self.settings.reject_nis), S), used=True)
+        return Correction(nis, log_likelihood(min(nis, self.settings.reject_nis), S), used=True)
 
     def correct_far(self, observe: Callable[["ErrorState"], Observation], noise: Matrix) -> Correction:
         """Take in a measurement that may move the state far, unless it is out of the question.
@@ -210,7 +195,7 @@ class ErrorState:
             at = prior.copied()
             at.move(error)
             residual, blocks = observe(at)
-            H = _dense(blocks, len(residual), len(cov))
+            H = dense(blocks, len(residual), len(cov))
             S = H @ cov @ H.T + noise
             K = np.asarray(np.linalg.solve(S, H @ cov).T, np.float64)
             error = K @ (residual + H @ error)
@@ -218,9 +203,9 @@ class ErrorState:
         nis = float(first @ np.linalg.solve(S, first)) / len(first)
         if nis > self.settings.reject_nis:
             return Correction(nis, -0.5 * len(first) * self.settings.reject_nis, used=False)
-        self.covariance = _joseph(cov, K, H, noise)
+        self.covariance = joseph(cov, K, H, noise)
         self.move(error)
-        return Correction(nis, _log_likelihood(nis, S), used=True)
+        return Correction(nis, log_likelihood(nis, S), used=True)
 
     def move(self, error: Matrix) -> None:
         """Move the nominal state by an error."""
@@ -334,22 +319,3 @@ class ErrorState:
 _DIAGONAL = (np.arange(SIZE), np.arange(SIZE))
 _P_V = (np.arange(3), np.arange(3, 6))
 _V_P = (np.arange(3, 6), np.arange(3))
-
-
-def _dense(blocks: Blocks, rows: int, columns: int) -> Matrix:
-    H = np.zeros((rows, columns))
-    for where, block in blocks:
-        H[:, where] += block
-    return H
-
-
-def _joseph(cov: Matrix, K: Matrix, H: Matrix, noise: Matrix) -> Matrix:
-    """Return (I - K H) cov (I - K H)^T + K noise K^T, symmetric to the last bit."""
-    reduced = cov - K @ (H @ cov)
-    reduced = reduced - (reduced @ H.T) @ K.T + K @ noise @ K.T
-    return np.asarray(0.5 * (reduced + reduced.T))
-
-
-def _log_likelihood(nis: float, S: Matrix) -> float:
-    m = len(S)
-    return -0.5 * (m * nis + log(float(np.linalg.det(S))) + m * log(2.0 * pi))

@@ -7,10 +7,11 @@ import numpy as np
 from tracker.measurements import Matrix, Vector3, VisualMotion
 from tracker.precise import observations, parallax
 from tracker.precise.error_model import SIZE, THETA
-from tracker.precise.error_state import Correction, ErrorState
+from tracker.precise.error_state import ErrorState
 from tracker.precise.hypotheses import Hypotheses
 from tracker.precise.settings import PreciseSettings
 from tracker.precise.tracks import Tracks, seen_in
+from tracker.precise.update import Correction
 from tracker.rig import Rig
 
 #: Fewer pictures of a feature say nothing that its unknown place could not explain.

@@ -13,8 +13,9 @@ import numpy as np
 from tracker.geometry import rotate
 from tracker.measurements import ImuSample, Matrix
 from tracker.precise.error_model import FORGETTING, THETA, P, V
-from tracker.precise.error_state import ErrorState, Observation
+from tracker.precise.error_state import ErrorState
 from tracker.precise.navigation import Navigation
+from tracker.precise.update import Observation
 
 #: The slowest units say something every 60 ms; after this long they have been away.
 GAP_NS = 200_000_000

@@ -12,8 +12,9 @@ import numpy as np
 from tracker.geometry import multiply, normalise, wrap_rad, wxyz_from_yaw, yaw_of
 from tracker.measurements import Matrix
 from tracker.precise.error_model import THETA, V
-from tracker.precise.error_state import Correction, ErrorState
+from tracker.precise.error_state import ErrorState
 from tracker.precise.navigation import Navigation
+from tracker.precise.update import Correction
 
 #: A hypothesis this much less likely than the best one is dropped (natural logarithm).
 HOPELESS = 12.0

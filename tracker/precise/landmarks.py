@@ -16,8 +16,9 @@ from tracker.geometry import conjugate, multiply, rotate
 from tracker.measurements import Matrix, Sighting, Vector3, Wxyz
 from tracker.precise import observations
 from tracker.precise.error_model import P
-from tracker.precise.error_state import Correction, ErrorState
+from tracker.precise.error_state import ErrorState
 from tracker.precise.navigation import Navigation
+from tracker.precise.update import Correction
 from tracker.precise.way import KEPT_S, Way
 
 #: Sightings older than this are not taken again: the way since is not known well enough.

@@ -10,7 +10,8 @@ import numpy as np
 from tracker.geometry import log, rotate, wrap_rad, wxyz_from_matrix
 from tracker.measurements import Matrix, Vector3
 from tracker.precise.error_model import BG, GPS_ERROR, MAGNETIC, SIZE, THETA, P, V, skew
-from tracker.precise.error_state import ErrorState, Observation
+from tracker.precise.error_state import ErrorState
+from tracker.precise.update import Observation
 
 _I3 = np.eye(3)
 

@@ -14,10 +14,11 @@ from tracker.geometry import wrap_rad
 from tracker.measurements import Matrix
 from tracker.pace import GAIT_STD_M_S2, WALKING_M_S
 from tracker.precise.error_model import THETA, V
-from tracker.precise.error_state import ErrorState, Observation
+from tracker.precise.error_state import ErrorState
 from tracker.precise.facing import Facing
 from tracker.precise.navigation import Navigation
 from tracker.precise.settings import PreciseSettings
+from tracker.precise.update import Observation
 
 #: What is remembered of a quarter of a second after another one: some minutes' walking.
 _KEPT = 0.998

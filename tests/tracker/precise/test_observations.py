@@ -11,9 +11,10 @@ from tracker.geometry import normalise
 from tracker.measurements import Matrix, Vector3, Wxyz
 from tracker.precise import observations
 from tracker.precise.error_model import THETA, start_covariance
-from tracker.precise.error_state import ErrorState, Observation
+from tracker.precise.error_state import ErrorState
 from tracker.precise.navigation import Biases, Navigation
 from tracker.precise.settings import PreciseSettings
+from tracker.precise.update import Observation
 
 SETTINGS = PreciseSettings()
 LEVER: Vector3 = (0.1, -0.2, 0.3)

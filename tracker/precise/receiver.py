@@ -1,0 +1,95 @@
+"""What the filter makes of a receiver: how far its fixes and velocities are believed, and who is right where they disagree."""
+
+from math import hypot, sqrt
+
+import numpy as np
+
+from tracker.fixes import variance_m2
+from tracker.geodesy import SiteFrame
+from tracker.measurements import GpsFix, GpsVelocity, Vector3
+from tracker.precise import observations
+from tracker.precise.error_state import ErrorState
+from tracker.precise.evenness import Evenness
+from tracker.precise.hypotheses import Hypotheses
+from tracker.precise.insistence import Insistence
+from tracker.precise.settings import PreciseSettings
+from tracker.precise.update import Correction
+
+#: Who has been so far from where the receiver was first has walked: then motion tells north.
+_WALKED_M = 6.0
+#: A receiver that was silent for longer than its usual second leaves the filter blind.
+_BLIND_NS = 2_500_000_000
+
+
+class Receiver:
+    """The antenna on its rig, and all that is remembered of what it told."""
+
+    def __init__(self, settings: PreciseSettings, site: SiteFrame, lever_body_m: Vector3) -> None:
+        """`lever_body_m` is where the antenna is in the body."""
+        self._settings, self._site, self._lever_m = settings, site, lever_body_m
+        self.fix_ns: int | None = None
+        """Of the last fix taken in."""
+        self._insistence = Insistence(settings.insist)
+        self._evenness = Evenness(settings)
+        self._first_fix_m: Vector3 | None = None
+        self._has_walked = False
+
+    def is_blind(self, t_ns: int) -> bool:
+        """Whether it has been silent for longer than its usual second."""
+        return self.fix_ns is None or t_ns - self.fix_ns > _BLIND_NS
+
+    def may_tell_north(self, filter_: ErrorState) -> bool:
+        """Whether standing and fixes may: of a rig that has not walked they would tell something, a little, again and again."""
+        return self._has_walked or float(filter_.covariance[8, 8]) < self._settings.heading_known_rad**2
+
+    def place(self, hypotheses: Hypotheses, fix: GpsFix) -> None:
+        """Begin at a first fix, of which the receiver's own error is left open."""
+        for filter_ in hypotheses.filters:
+            filter_.place(
+                self._site.site_from_geodetic(fix.lat_deg, fix.lon_deg, fix.h_ellipsoid_m), forget_receiver=False
+            )
+
+    def take_fix(self, hypotheses: Hypotheses, fix: GpsFix) -> None:
+        """Correct by a fix; one that is refused again and again is believed after all."""
+        settings = self._settings
+        p = self._site.site_from_geodetic(fix.lat_deg, fix.lon_deg, fix.h_ellipsoid_m)
+        var = variance_m2(fix, settings.gps_floor_m, settings.gps_sigma_m)
+        ex, ey, ez = (sqrt(v * settings.gps_inflation) for v in var)
+        sigma = (ex, ey, ez)
+        if self._evenness.take(fix.t_ns, p, sigma):
+            for filter_ in hypotheses.filters:
+                filter_.believe_receiver(self._evenness.errors)
+        noise = np.diag(self._evenness.white_share * np.square(sigma))
+        self._note_way(p)
+        done = hypotheses.correct(
+            lambda f: f.correct(
+                *observations.gps_position(f, p, sigma, self._lever_m),
+                noise,
+                tells_north=self.may_tell_north(hypotheses.best),
+            )
+        )
+        self.fix_ns = fix.t_ns
+        if done is None or done.used:
+            self._insistence.accepted()
+        elif self._insistence.believes(fix.t_ns, p, hypotheses.best.nav.p_m, max(ex, ey)):
+            for filter_ in hypotheses.filters:
+                filter_.place(p)
+                filter_.correct(*observations.gps_position(filter_, p, sigma, self._lever_m), noise)
+
+    def _note_way(self, p_site_m: Vector3) -> None:
+        self._first_fix_m = self._first_fix_m or p_site_m
+        x, y, _ = self._first_fix_m
+        self._has_walked |= hypot(p_site_m[0] - x, p_site_m[1] - y) > _WALKED_M
+
+    def take_velocity(self, hypotheses: Hypotheses, measured: GpsVelocity, gyro_rad_s: Vector3) -> Correction | None:
+        """Correct by a velocity; `gyro_rad_s` with its bias."""
+        self._has_walked = True  # or stands, as far as can be told: a velocity is better evidence than a way
+        sigma = self._settings.gps_velocity_sigma_m_s
+        noise = np.diag([sigma**2, sigma**2, (1.5 * sigma) ** 2])
+        return hypotheses.correct(
+            lambda f: f.correct(
+                *observations.gps_velocity(f, measured.v_enu_m_s, gyro_rad_s, self._lever_m),
+                noise,
+                gate_nis=self._settings.velocity_nis,
+            )
+        )
