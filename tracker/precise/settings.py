@@ -71,11 +71,11 @@ class PreciseSettings:
     """How well the height of the eyes above the ground is known,"""
     eye_height_repeats: float = 8.0
     """and how many times it says the same in a quarter of a second each: its error does not average out."""
-    feature_px: float = 0.7
+    feature_px: float = 0.5
     """Error of a feature in a picture, at best."""
     feature_nis: float = 3.0
     """Per dimension: a feature that is further off slid along an outline, or moves by itself."""
-    feature_pictures: int = 12
+    feature_pictures: int = 16
     """A feature is followed over so many held pictures at most, and then has told what it can."""
     blend_s: float = 2.2
     """A correction moves what is shown with this time constant: a temple that jumps is worse than one that is off."""
