@@ -1,5 +1,7 @@
 """A site laid one eye height below the first pose: every pose lifted by as much as the first, whatever is done in between."""
 
+from dataclasses import replace
+
 import pytest
 
 from tracker.estimator import Estimator
@@ -73,4 +75,17 @@ def test_what_visitors_say_of_heights_is_lowered_as_poses_are_lifted(measurement
     for of, up_m in ((levelled, lift_m), (other, 0.0)):
         assert of.step(Sighting(t_ns, t_ns, (9.0, 9.0, 3.0 + up_m), (0.0, 0.0, 1.0), 0.3)) is Outcome.USED
         assert of.step(Standpoint(t_ns, t_ns, (1.0, 2.0, 1.0 + up_m), 0.3)) is Outcome.USED
-    assert levelled.snapshot()[0][1].waiting == other.snapshot()[1].waiting
+    lowered, told = levelled.snapshot()[0][1].waiting, other.snapshot()[1].waiting
+    assert [_to_a_nanometre(one) for one in lowered] == [_to_a_nanometre(one) for one in told]
+
+
+def _to_a_nanometre(waiting: Measurement) -> Measurement:
+    """Return a measurement, what visitors said in it rounded: what is added and taken away again may end beside where it began."""
+    match waiting:
+        case Sighting():
+            x, y, z = waiting.point_site_m
+            return replace(waiting, point_site_m=(x, y, round(z, 9)))
+        case Standpoint():
+            x, y, z = waiting.p_site_m
+            return replace(waiting, p_site_m=(x, y, round(z, 9)))
+    return waiting
