@@ -1,8 +1,10 @@
 """docs/accuracy.md, written from what the study and the logs measured: every number in it is one of theirs."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
+
+import numpy as np
 
 from server.blocks import Block, Code, Document, Grid, Heading, Items, Shown, Text
 from server.markdown import write_markdown
@@ -231,5 +233,9 @@ def _sensors(estimator: str) -> str:
     return {GPS_IMU: "GPS, IMU", CAMERA: "with camera"}.get(estimator, estimator)
 
 
-def _number(row: Mapping[str, object]) -> str:
-    return f"{row['value']:.3g} {row['unit']}".rstrip()
+def _number(row: Figures) -> str:
+    """Return what was measured, with as many digits as tell what is missed from what was asked."""
+    texts = [f"{row['value']:.{digits}g}" for digits in range(3, 17)]
+    bounds = np.atleast_1d(row["at_least"])
+    told = texts[0] if row["met"] != "no" else next((text for text in texts if float(text) not in bounds), texts[-1])
+    return f"{told} {row['unit']}".rstrip()

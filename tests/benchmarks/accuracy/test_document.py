@@ -34,6 +34,11 @@ def test_what_is_missed_is_told_with_what_was_asked() -> None:
     assert not any(isinstance(block, Items) for block in compose(_study(0.2), None).blocks)
 
 
+def test_what_is_missed_by_little_does_not_look_met() -> None:
+    missed = [block for block in compose(_study(0.30004), None).blocks if isinstance(block, Items)]
+    assert "tilt RMSE (plain, GPS, IMU): 0.30004 °, asked 0.3 °." in missed[0].items
+
+
 def test_every_number_of_the_study_is_in_the_tables() -> None:
     text = markdown(compose(_study(0.2), None), "accuracy")
     assert "| ATE over raw GPS's | plain, 3 | with camera | 0.55 |" in text
