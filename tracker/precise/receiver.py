@@ -45,14 +45,12 @@ class Receiver:
     def place(self, hypotheses: Hypotheses, fix: GpsFix) -> None:
         """Begin at a first fix, of which the receiver's own error is left open."""
         for filter_ in hypotheses.filters:
-            filter_.place(
-                self._site.site_from_geodetic(fix.lat_deg, fix.lon_deg, fix.h_ellipsoid_m), forget_receiver=False
-            )
+            filter_.place(self._place_of(fix), forget_receiver=False)
 
     def take_fix(self, hypotheses: Hypotheses, fix: GpsFix) -> None:
         """Correct by a fix; one that is refused again and again is believed after all."""
         settings = self._settings
-        p = self._site.site_from_geodetic(fix.lat_deg, fix.lon_deg, fix.h_ellipsoid_m)
+        p = self._place_of(fix)
         var = variance_m2(fix, settings.gps_floor_m, settings.gps_sigma_m)
         ex, ey, ez = (sqrt(v * settings.gps_inflation) for v in var)
         sigma = (ex, ey, ez)
@@ -75,6 +73,9 @@ class Receiver:
             for filter_ in hypotheses.filters:
                 filter_.place(p)
                 filter_.correct(*observations.gps_position(filter_, p, sigma, self._lever_m), noise)
+
+    def _place_of(self, fix: GpsFix) -> Vector3:
+        return self._site.site_from_geodetic(fix.lat_deg, fix.lon_deg, fix.h_ellipsoid_m)
 
     def _note_way(self, p_site_m: Vector3) -> None:
         self._first_fix_m = self._first_fix_m or p_site_m
