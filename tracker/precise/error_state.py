@@ -143,6 +143,7 @@ class ErrorState:
         gate_nis: float | None = None,
         tells_north: bool = True,
         is_relative: bool = False,
+        share: float = 1.0,
     ) -> Correction:
         """Take a measurement in, in Joseph's form.
 
@@ -155,6 +156,7 @@ class ErrorState:
             tells_north: Whether it may tell yaw, now and of what is held, and what is wrong with the gyroscope's z; else their
                 doubt is taken into account, and they stay as they are.
             is_relative: Whether it would be the same if all places and attitudes were turned as one (see `_turn_doubts`).
+            share: By how much of what is most likely all is moved but the receiver's error.
 
         Reference:
             Schmidt, Application of state-space methods to navigation problems, 1966 (considered states).
@@ -175,6 +177,10 @@ class ErrorState:
         if not tells_north:
             K[_NORTH] = 0.0
             K[SIZE + 5 :: 6] = 0.0
+        if share < 1.0:
+            receiver = K[GPS_ERROR].copy()
+            K *= share
+            K[GPS_ERROR] = receiver
         self.covariance, error = joseph(cov, K, H, noise), K @ residual
         if is_relative:
             self._turn_doubts(error)

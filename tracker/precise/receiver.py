@@ -8,6 +8,7 @@ from tracker.fixes import variance_m2
 from tracker.geodesy import SiteFrame
 from tracker.measurements import GpsFix, GpsVelocity, Vector3
 from tracker.precise import observations
+from tracker.precise.doubt import Doubt
 from tracker.precise.error_state import ErrorState
 from tracker.precise.evenness import Evenness
 from tracker.precise.hypotheses import Hypotheses
@@ -31,6 +32,7 @@ class Receiver:
         """Of the last fix taken in."""
         self._insistence = Insistence(settings.insist)
         self._evenness = Evenness(settings)
+        self._doubt = Doubt(settings)
         self._first_fix_m: Vector3 | None = None
         self._has_walked = False
 
@@ -59,13 +61,17 @@ class Receiver:
                 filter_.believe_receiver(self._evenness.errors)
         noise = np.diag(self._evenness.white_share * np.square(sigma))
         self._note_way(p)
+        hypotheses.best.settle()
+        share = self._doubt.share(fix.t_ns, hypotheses.best.covariance)
         done = hypotheses.correct(
             lambda f: f.correct(
                 *observations.gps_position(f, p, sigma, self._lever_m),
                 noise,
                 tells_north=self.may_tell_north(hypotheses.best),
+                share=share,
             )
         )
+        self._doubt.corrected(hypotheses.best.covariance)
         self.fix_ns = fix.t_ns
         if done is None or done.used:
             self._insistence.accepted()
@@ -73,6 +79,7 @@ class Receiver:
             for filter_ in hypotheses.filters:
                 filter_.place(p)
                 filter_.correct(*observations.gps_position(filter_, p, sigma, self._lever_m), noise)
+            self._doubt.begin()
 
     def _place_of(self, fix: GpsFix) -> Vector3:
         return self._site.site_from_geodetic(fix.lat_deg, fix.lon_deg, fix.h_ellipsoid_m)

@@ -39,6 +39,10 @@ class PreciseSettings:
     """Shares of the stated variance; what is left over is white."""
     gps_inflation: float = 1.5
     """By how much stated variances are taken larger: receivers flatter themselves."""
+    fresh_s: float = 60.0
+    """What has come to be doubted of the place is corrected in full for about this long,"""
+    settled_share: float = 0.5
+    """and later by this share of what a fix makes likely: the square stands stiller, and hardly less near."""
     gps_sigma_m: Vector3 = (2.12, 2.12, 4.0)
     """For a receiver that states none."""
     gps_floor_m: float = 0.3
