@@ -71,6 +71,32 @@ def test_what_is_relative_tells_nobody_which_way_all_of_it_lies() -> None:
     assert after == pytest.approx(before, abs=1e-9 * np.abs(before).max())
 
 
+def test_a_part_of_a_correction_moves_that_part_of_the_way_and_its_covariance_knows() -> None:
+    """Over many draws of the truth the error left is what the covariance says, though it is not the least."""
+    rng, prior, noise = np.random.default_rng(5), _state(), 0.5 * np.eye(3)
+    whole, part = _state(), _state()
+    seen = np.array([0.9, -0.4, 0.2])
+    for state, share in ((whole, 1.0), (part, 0.4)):
+        residual, blocks = observations.position(state, tuple((seen + prior.nav.p_m).tolist()))
+        state.correct(residual, blocks, noise, share=share)
+    moved = np.subtract(part.nav.p_m, prior.nav.p_m)
+    assert moved == pytest.approx(0.4 * np.subtract(whole.nav.p_m, prior.nav.p_m))
+    truth = rng.multivariate_normal(np.zeros(3), prior.covariance[P, P], 20_000)
+    told = truth + rng.multivariate_normal(np.zeros(3), noise, len(truth))
+    gain = (moved / seen)[0]
+    assert np.mean((truth - gain * told) ** 2, axis=0) == pytest.approx(np.diag(part.covariance)[P], rel=0.05)
+    assert np.all(np.diag(part.covariance)[P] > np.diag(whole.covariance)[P])
+
+
+def test_a_part_of_a_correction_leaves_the_receivers_error_as_likely_as_the_whole_does() -> None:
+    whole, part = _state(), _state()
+    for state, share in ((whole, 1.0), (part, 0.4)):
+        seen = observations.gps_position(state, (2.0, 2.0, 3.0), (2.0, 2.0, 4.0), (0.0, 0.0, 0.0))
+        state.correct(*seen, np.eye(3), share=share)
+    assert np.all(part.gps_error == whole.gps_error)
+    assert np.any(part.gps_error != 0.0)
+
+
 def test_the_further_out_a_measurement_is_the_less_it_counts() -> None:
     """To the gate a correction grows with what is measured, beyond it shrinks, and in the end there is none."""
     per_m_s, gate_nis = _velocity_moved_by(0.01, None)[0] / 0.01, 2.5
