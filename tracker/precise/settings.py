@@ -96,5 +96,7 @@ class PreciseSettings:
         for name in (field.name for field in fields(self)):
             value = getattr(self, name)
             require_positive(**{name: min(value) if isinstance(value, tuple) else value})
+        if self.settled_share > 1.0:
+            raise ValueError(f"settled_share is more than the whole: {self.settled_share:g}")
         if sum(self.gps_error_share) > 1.0:
             raise ValueError(f"the shares of gps_error_share are more than the whole: {sum(self.gps_error_share):g}")

@@ -30,6 +30,11 @@ def _shares(fixes: list[tuple[float, float, float]]) -> list[float]:
     return found
 
 
+def test_more_than_the_whole_is_no_share() -> None:
+    with pytest.raises(ValueError, match="more than the whole"):
+        PreciseSettings(settled_share=1.1)
+
+
 def test_a_first_fix_moves_the_place_in_full() -> None:
     assert _shares([(7.0, 1e4, 6.0)]) == [1.0]
 
