@@ -192,7 +192,7 @@ def _recorded(logs: Figures) -> list[Block]:
     return [
         Heading("Recorded walks"),
         Text(
-            "Real recordings, and some of a simulator that shares nothing with ours. "
+            "Real recordings, and some of a simulator that shares nothing with ours. They were in sight when settings were chosen. "
             f"{len(goals) - len(missed)} of {len(goals)} figures are met."
         ),
         *([Items(tuple(_miss_log(row) for row in missed))] if missed else ()),
