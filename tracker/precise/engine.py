@@ -35,6 +35,7 @@ from tracker.precise.start import Start
 from tracker.precise.stride import Stride
 from tracker.precise.timeline import Keyframe, Timed
 from tracker.precise.update import Correction
+from tracker.precise.way import Way
 from tracker.rig import Rig
 
 _I3 = np.eye(3)
@@ -58,7 +59,8 @@ class Engine:
         self._eye = Eye(settings, rig)
         x, y, z = rig.T_body_gps[:3, 3].tolist()
         self._receiver = Receiver(settings, site, (x, y, z))
-        self._landmarks = Landmarks(self._eye.lever_m)
+        self._way = Way()
+        self._landmarks = Landmarks(self._eye.lever_m, self._way)
         self._compass = compass
         self._activity = Activity()
         self._stride = Stride()
@@ -148,7 +150,7 @@ class Engine:
                 drift(filter_, sample.t_ns)
             else:
                 filter_.advance(sample.t_ns, gyro, accel)
-        self._landmarks.moved(before, self.best.nav)
+        self._way.moved(before, self.best.nav)
         if counted:
             self._counted_ns = sample.t_ns
             self._look_after_gap(sample, in_gap)
@@ -236,7 +238,7 @@ class Engine:
         if is_first:
             receiver.place(hypotheses, fix)
             self._find_heading()
-        receiver.take_fix(hypotheses, fix)
+        receiver.take_fix(hypotheses, fix, self._way.walked_m)
         if is_first:
             self._stand_on_ground()  # before anything is shown: a first height that is off by metres would be seen sliding
         self._judge_heading()

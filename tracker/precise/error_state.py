@@ -308,6 +308,12 @@ class ErrorState:
         self.gps_error = all_slow @ self.gps_error
         self.noise.receiver = shares_and_times
 
+    def doubt_receiver(self, variances: Matrix) -> None:
+        """Let the receiver's quickest error be another one from now on: add (3,) variances, in units of its stated ones."""
+        self.settle()
+        quickest = np.arange(GPS_ERROR.start, GPS_ERROR.start + 3)
+        self.covariance[quickest, quickest] += variances
+
     def copied(self) -> "ErrorState":
         """Return a copy that shares nothing that changes."""
         self.settle()

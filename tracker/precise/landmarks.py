@@ -17,7 +17,6 @@ from tracker.measurements import Matrix, Sighting, Vector3, Wxyz
 from tracker.precise import observations
 from tracker.precise.error_model import P
 from tracker.precise.error_state import ErrorState
-from tracker.precise.navigation import Navigation
 from tracker.precise.update import Correction
 from tracker.precise.way import KEPT_S, Way
 
@@ -50,14 +49,10 @@ class _Seen:
 class Landmarks:
     """The recent sightings, and the way since each."""
 
-    def __init__(self, lever_body_m: Vector3) -> None:
+    def __init__(self, lever_body_m: Vector3, way: Way) -> None:
         self._lever = lever_body_m
         self._seen: list[_Seen] = []
-        self._way = Way()
-
-    def moved(self, before: Navigation, after: Navigation) -> None:
-        """Take a step of the strapdown integral, corrections left out."""
-        self._way.moved(before, after)
+        self._way = way
 
     def recalls(self, sighting: Sighting) -> bool:
         """Whether the way since a sighting is known, and it is a new one."""

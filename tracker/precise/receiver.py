@@ -13,6 +13,7 @@ from tracker.precise.error_state import ErrorState
 from tracker.precise.evenness import Evenness
 from tracker.precise.hypotheses import Hypotheses
 from tracker.precise.insistence import Insistence
+from tracker.precise.leaps import Leaps
 from tracker.precise.settings import PreciseSettings
 from tracker.precise.update import Correction
 
@@ -30,9 +31,11 @@ class Receiver:
         self._settings, self._site, self._lever_m = settings, site, lever_body_m
         self.fix_ns: int | None = None
         """Of the last fix taken in."""
+        self._velocity_ns = -_BLIND_NS
         self._insistence = Insistence(settings.insist)
         self._evenness = Evenness(settings)
         self._doubt = Doubt(settings)
+        self._leaps = Leaps()
         self._first_fix_m: Vector3 | None = None
         self._has_walked = False
 
@@ -49,8 +52,14 @@ class Receiver:
         for filter_ in hypotheses.filters:
             filter_.place(self._place_of(fix), forget_receiver=False)
 
-    def take_fix(self, hypotheses: Hypotheses, fix: GpsFix) -> None:
-        """Correct by a fix; one that is refused again and again is believed after all."""
+    def take_fix(self, hypotheses: Hypotheses, fix: GpsFix, walked_m: Vector3) -> None:
+        """Correct by a fix; one that is refused again and again is believed after all.
+
+        Args:
+            hypotheses: What is corrected.
+            fix: What the receiver says.
+            walked_m: The way so far in site axes, corrections left out.
+        """
         settings = self._settings
         p = self._place_of(fix)
         var = variance_m2(fix, settings.gps_floor_m, settings.gps_sigma_m)
@@ -62,6 +71,10 @@ class Receiver:
         noise = np.diag(self._evenness.white_share * np.square(sigma))
         self._note_way(p)
         hypotheses.best.settle()
+        leap_m = self._leaps.take(fix.t_ns, np.subtract(p, walked_m) - hypotheses.best.R_site_body @ self._lever_m)
+        if leap_m.any() and fix.t_ns - self._velocity_ns <= _BLIND_NS:  # else fixes alone hold the inertial unit
+            for filter_ in hypotheses.filters:
+                filter_.doubt_receiver(np.square(leap_m / sigma))
         share = self._doubt.share(fix.t_ns, hypotheses.best.covariance)
         done = hypotheses.correct(
             lambda f: f.correct(
@@ -92,7 +105,10 @@ class Receiver:
     def take_velocity(self, hypotheses: Hypotheses, measured: GpsVelocity, gyro_rad_s: Vector3) -> Correction | None:
         """Correct by a velocity; `gyro_rad_s` with its bias."""
         self._has_walked = True  # or stands, as far as can be told: a velocity is better evidence than a way
+        self._velocity_ns = measured.t_ns
         sigma = self._settings.gps_velocity_sigma_m_s
+        if self._leaps.is_aside:
+            sigma *= self._settings.gps_velocity_aside
         noise = np.diag([sigma**2, sigma**2, (1.5 * sigma) ** 2])
         return hypotheses.correct(
             lambda f: f.correct(

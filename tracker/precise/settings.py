@@ -49,6 +49,8 @@ class PreciseSettings:
     """A receiver that states less is not believed."""
     gps_velocity_sigma_m_s: float = 0.1
     """White noise of a horizontal velocity; half as much again of the vertical one."""
+    gps_velocity_aside: float = 5.0
+    """Near a wall, where its fixes have leapt aside, it is so many times as large."""
     gate_nis: float = 9.0
     """Per dimension: what lies further out counts for less and less,"""
     reject_nis: float = 40.0

@@ -19,6 +19,10 @@ LATE_S = (0.15, 0.35)
 RATE_HZ = 1.0
 STREAM = 33
 AXES = np.array([1.0, 1.0, UP])
+#: Beside a wall it hears a satellite by way of that wall: metres off at once, its speed by some tenths, and after a while neither.
+ECHO_EVERY_S, ECHO_S = 45.0, (3.0, 14.0)
+ECHO_M, ECHO_M_S = 4.0, 0.22
+ECHO_STREAM = 34
 
 
 def claimed_m() -> Matrix:
@@ -47,13 +51,29 @@ def velocity_error_m_s(rng: np.random.Generator, count: int) -> Matrix:
     return np.asarray(error + spikes[:, None] * direction)
 
 
-def receive(walk: Visitor, understates: float, silent_s: tuple[float, float] | None) -> Iterator[GpsFix | GpsVelocity]:
+def echoes(rng: np.random.Generator, count: int) -> tuple[Matrix, Matrix]:
+    """Return what walls add to `count` fixes, m, and velocities, m/s: (n, 3) each, spell after spell."""
+    fixes, velocities = np.zeros((count, 3)), np.zeros((count, 3))
+    at_s = rng.exponential(ECHO_EVERY_S)
+    while (first := round(at_s * RATE_HZ)) < count:
+        end_s = at_s + rng.uniform(*ECHO_S)
+        spell = slice(first, round(end_s * RATE_HZ))
+        fixes[spell] = rng.normal(0.0, ECHO_M, 3) * AXES
+        velocities[spell] = rng.normal(0.0, ECHO_M_S, 3)
+        at_s = end_s + rng.exponential(ECHO_EVERY_S)
+    return fixes, velocities
+
+
+def receive(
+    walk: Visitor, understates: float, silent_s: tuple[float, float] | None, *, walls: bool = False
+) -> Iterator[GpsFix | GpsVelocity]:
     """Yield fixes and velocities of the antenna.
 
     Args:
         walk: The truth.
         understates: By how much the claimed sigma is too small.
         silent_s: From when to when, in seconds of the walk, nothing is received.
+        walls: Whether some are near enough to throw back what is received.
     """
     rng = np.random.default_rng([walk.settings.seed, STREAM])
     stamps, site = walk.stamps(RATE_HZ), SiteFrame(walk.settings.origin)
@@ -61,6 +81,9 @@ def receive(walk: Visitor, understates: float, silent_s: tuple[float, float] | N
     p = motion.p_m + motion.R_site_body @ lever_m + position_error_m(rng, len(stamps))
     swing = np.einsum("nij,nj->ni", motion.R_site_body, np.cross(motion.omega_body_rad_s, lever_m))
     v = motion.v_m_s + swing + velocity_error_m_s(rng, len(stamps))
+    if walls:
+        of_fixes, of_velocities = echoes(np.random.default_rng([walk.settings.seed, ECHO_STREAM]), len(stamps))
+        p, v = p + of_fixes, v + of_velocities
     late_ns = (rng.uniform(*LATE_S, len(stamps)) * 1e9).astype(np.int64)
     cov = tuple(np.diag((claimed_m() / understates) ** 2).ravel().tolist())
     for number, t in enumerate(stamps.tolist()):

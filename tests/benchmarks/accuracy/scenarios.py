@@ -29,6 +29,8 @@ class Scenario:
     """By how much the receiver's claimed sigma is too small."""
     outage: bool = False
     disturbance: bool = False
+    walls: bool = False
+    """Whether walls throw back to the receiver what is not for it to hear."""
     taps: int = 0
     stands_here: bool = False
     knows_ground: bool = False
@@ -42,6 +44,7 @@ SCENARIOS = {
         Scenario("no-magnetometer", "the rig has none", magnetometer="absent"),
         Scenario("understated", "the receiver claims a sigma 1.5 times too small", understates=1.5),
         Scenario("outage", "no GPS for 60 s while walking", outage=True),
+        Scenario("walls", "walls throw echoes to the receiver, a few seconds at a time", walls=True),
         Scenario("disturbance", "iron turns the magnetic field for 60 s", disturbance=True),
         Scenario("turned-start", "the magnetometer is half a turn wrong at first, then silent", magnetometer="turned"),
         Scenario("three-taps", "three landmarks are pointed out", taps=3),

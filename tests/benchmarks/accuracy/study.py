@@ -23,7 +23,7 @@ SEEDS = tuple(range(101, 117))
 PAPER = tuple(f"{sensors}/paper" for sensors in SENSORS)
 RIVALS = ("gtsam/batch", "gtsam/fixed-lag", "filterpy/imm", "vqf", "imufusion")
 #: Where raw GPS stands beside the precise filter: what only it takes in (landmarks, the ground) changes nothing for others.
-COMPARED = ("plain", "no-magnetometer", "understated", "outage", "disturbance", "turned-start")
+COMPARED = ("plain", "no-magnetometer", "understated", "outage", "walls", "disturbance", "turned-start")
 RIVALLED = ("plain", "outage")
 #: What measurements and figures are made by; tables and goals are not among it.
 _SOURCES = (

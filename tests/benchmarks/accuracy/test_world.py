@@ -126,6 +126,32 @@ def test_a_receivers_velocity_is_now_and_then_half_a_metre_off() -> None:
     assert np.mean(length > 0.45) == pytest.approx(receiver.SPIKE_SHARE, rel=0.5)
 
 
+def test_walls_set_fixes_and_velocities_aside_for_seconds_and_change_nothing_else() -> None:
+    walk = walk_of(2)
+    far, near = (
+        {(type(m), m.t_ns): m for m in receiver.receive(walk, 1.0, None, walls=walls)} for walls in (False, True)
+    )
+    assert far.keys() == near.keys()
+    differs = {
+        kind: sorted(t for of, t in far if of is kind and far[of, t] != near[of, t]) for kind in (GpsFix, GpsVelocity)
+    }
+    assert differs[GpsFix] == differs[GpsVelocity]
+    share = len(differs[GpsFix]) * 2 / len(far)
+    assert 0.02 < share < 0.4
+
+
+def test_a_spell_beside_a_wall_lasts_seconds_and_is_metres_aside() -> None:
+    fixes, velocities = receiver.echoes(np.random.default_rng(1), 20_000)
+    beside = np.asarray(fixes.any(axis=1))
+    begun, over = np.flatnonzero(np.diff(beside.astype(int)) > 0), np.flatnonzero(np.diff(beside.astype(int)) < 0)
+    spells_s = over[: len(begun)] - begun[: len(over)]
+    assert spells_s.min() >= 2
+    assert spells_s.max() <= 15
+    assert np.array_equal(beside, velocities.any(axis=1))
+    assert fixes[beside].std(axis=0) == pytest.approx(4.0 * receiver.AXES, rel=0.15)
+    assert velocities[beside].std(axis=0) == pytest.approx([receiver.ECHO_M_S] * 3, rel=0.15)
+
+
 def test_fixes_are_of_the_antenna(plain: Recording) -> None:
     """The mean of fix minus antenna over seeds is nearer to zero than the lever arm's height could hide."""
     site, walk = SiteFrame(AGORA_ORIGIN), plain.walk

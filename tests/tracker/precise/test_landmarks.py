@@ -15,6 +15,7 @@ from tracker.precise.error_state import ErrorState
 from tracker.precise.landmarks import DISCOUNTED, Landmarks
 from tracker.precise.navigation import Biases, Navigation
 from tracker.precise.settings import PreciseSettings
+from tracker.precise.way import Way
 
 SETTINGS = PreciseSettings()
 LEVER: Vector3 = (0.1, 0.0, 0.0)
@@ -37,20 +38,21 @@ THERE = Navigation(S, (2.0, 1.0, 1.6), (0.0, 0.0, 0.0), wxyz_from_yaw(0.3 + pi /
 
 
 def test_a_sighting_that_agrees_moves_nothing_wherever_it_is_looked_at_from() -> None:
-    landmarks = Landmarks(LEVER)
+    way = Way()
+    landmarks = Landmarks(LEVER, way)
     (first, *again) = landmarks.see(*_sighting(HERE, (12.0, 4.0, 3.0)))
     assert again == []
     state = _state(HERE, 2.0)
     landmarks.correct(state, first)
     assert state.nav.p_m == pytest.approx(HERE.p_m, abs=1e-9)
-    landmarks.moved(HERE, THERE)
+    way.moved(HERE, THERE)
     later = _state(THERE, 2.0)
     landmarks.correct(later, first)
     assert later.nav.p_m == pytest.approx(THERE.p_m, abs=1e-9)
 
 
 def test_doubt_of_metres_discounts_and_a_known_place_does_not() -> None:
-    landmarks = Landmarks(LEVER)
+    landmarks = Landmarks(LEVER, Way())
     first = next(landmarks.see(*_sighting(HERE, (12.0, 4.0, 3.0))))
     landmarks.correct(_state(HERE, 2.0), first)
     assert first.discount > DISCOUNTED
@@ -65,7 +67,7 @@ def test_doubt_of_metres_discounts_and_a_known_place_does_not() -> None:
 
 def test_three_directions_tell_the_place() -> None:
     """From three metres off, to decimetres; the covariance admits what is left."""
-    landmarks = Landmarks(LEVER)
+    landmarks = Landmarks(LEVER, Way())
     state = _state(HERE._replace(p_m=(3.0, -0.5, 1.2)), 2.5)
     for index, point in enumerate([(12.0, 4.0, 3.0), (3.0, 14.0, 3.0), (-9.0, -6.0, 4.0)]):
         at = HERE._replace(t_ns=index * S)
@@ -85,7 +87,7 @@ def test_what_is_told_in_any_order_is_worth_the_same() -> None:
         known.correct(*observations.bearing(known, point, ray, LEVER), 0.003**2 * np.eye(2))
     best_m = np.sqrt(np.trace(known.covariance[P, P]))
     for order in permutations(points):
-        landmarks, state = Landmarks(LEVER), _state(HERE._replace(p_m=(3.0, -0.5, 1.2)), 2.5)
+        landmarks, state = Landmarks(LEVER, Way()), _state(HERE._replace(p_m=(3.0, -0.5, 1.2)), 2.5)
         for index, point in enumerate(order):
             for one in landmarks.see(*_sighting(HERE._replace(t_ns=index * S), point)):
                 landmarks.correct(state, one)
@@ -95,7 +97,7 @@ def test_what_is_told_in_any_order_is_worth_the_same() -> None:
 
 
 def test_what_was_seen_a_minute_ago_is_forgotten() -> None:
-    landmarks = Landmarks(LEVER)
+    landmarks = Landmarks(LEVER, Way())
     first = next(landmarks.see(*_sighting(HERE, (12.0, 4.0, 3.0))))
     first.discount = 9.0
     later = HERE._replace(t_ns=61 * S)
@@ -105,7 +107,7 @@ def test_what_was_seen_a_minute_ago_is_forgotten() -> None:
 @pytest.mark.parametrize("point", [(-9.0, -6.0, 4.0), (1.1, 2.0, 1.6), (12.0, 14.0, 3.0)])
 def test_a_slip_of_the_finger_moves_nothing(point: Vector3) -> None:
     """The direction is that of another landmark: this one is behind, or where the rig is, or far aside."""
-    landmarks, state = Landmarks(LEVER), _state(HERE, 0.3)
+    landmarks, state = Landmarks(LEVER, Way()), _state(HERE, 0.3)
     state.covariance[8, 8] = 0.02**2
     seen, ray = _sighting(HERE, (12.0, 4.0, 3.0))
     (wrong,) = landmarks.see(replace(seen, point_site_m=point), ray)
@@ -116,7 +118,7 @@ def test_a_slip_of_the_finger_moves_nothing(point: Vector3) -> None:
 
 
 def test_who_does_not_know_north_believes_what_is_pointed_out_behind() -> None:
-    landmarks = Landmarks(LEVER)
+    landmarks = Landmarks(LEVER, Way())
     state = _state(HERE._replace(wxyz_site_body=wxyz_from_yaw(0.3 + 2.0)), 0.3)
     state.covariance[8, 8] = 2.0**2
     (seen,) = landmarks.see(*_sighting(HERE, (12.0, 4.0, 3.0)))
