@@ -7,6 +7,7 @@ from time import thread_time_ns
 from typing import TYPE_CHECKING
 
 from tests.benchmarks.accuracy.raw import held_fixes
+from tests.benchmarks.accuracy.told import STUDIED, TOLD
 from tests.benchmarks.accuracy.world import Recording
 from tracker.estimator import Estimator, Pose
 from tracker.estimators import SELECTORS, SENSORS, Settings, build
@@ -126,6 +127,10 @@ def run_unit(recording: Recording, unit: str, settings: Settings | None = None) 
     sensors, _, kind = unit.rpartition("/")
     if sensors in SENSORS and kind == "paper":
         return list(paper(recording, sensors))
+    if unit == TOLD:
+        watched = precise(recording, f"{sensors}/precise", STUDIED)
+        watched.run.estimator = unit
+        return [watched]
     if sensors in SENSORS and kind == "precise":
         return [precise(recording, unit, settings)]
     return [rival(recording, unit)]

@@ -12,10 +12,11 @@ from server.paper.tasks import Task, content_key, progress_bar, run_tasks
 from server.paper.turn import closing_deg
 from tests.benchmarks.accuracy.entrants import PAPER_MODELS, PERIOD_NS, RAW, rivals
 from tests.benchmarks.accuracy.figures import ATTITUDE_ONLY
-from tests.benchmarks.accuracy.goals import BOTH
+from tests.benchmarks.accuracy.goals import BOTH, GPS_IMU
 from tests.benchmarks.accuracy.log_goals import summary
 from tests.benchmarks.accuracy.raw import held_fixes
 from tests.benchmarks.accuracy.study import FOLDER, HERE, RIVALS, is_wanted, kind_of
+from tests.benchmarks.accuracy.told import RECORDED, TOLD
 from tracker import score
 from tracker.estimators import SENSORS, Settings, missing_sensors
 from tracker.evaluate import Run, figures, log_origin, run
@@ -31,7 +32,7 @@ FULL_TURN = "transformflow-1606"
 #: Poses of pictures are asked for so much later there: who begins late is asked of the first picture all the same.
 CLOSING_WAIT_S = 0.95
 NEEDS_FIXES = (RAW, "gtsam/batch", "gtsam/fixed-lag", "filterpy/imm")
-_SOURCES = ("logs", "entrants", "raw")
+_SOURCES = ("logs", "entrants", "raw", "told")
 
 
 def logs(
@@ -75,7 +76,8 @@ def entrants(log: Log, wanted: Sequence[str] = ()) -> list[str]:
     """Return who can run on a log."""
     ours = [name for name in (*BOTH, *PAPER) if missing_sensors(name, log.info, log.rig) is None]
     others = [name for name in (RAW, *RIVALS) if log.info.counts["gps"] or name not in NEEDS_FIXES]
-    return [name for name in (*ours, *others) if is_wanted(name, wanted)]
+    told = (TOLD,) if log.name in RECORDED else ()
+    return [name for name in (*ours, *told, *others) if is_wanted(name, wanted)]
 
 
 def key_of(log: Path, entrant: str, settings: Settings | None) -> str:
@@ -93,7 +95,10 @@ def log_case(path: Path, entrant: str, settings: Settings | None) -> Figures:
     log = Log.open(path)
     row: Figures = {"log": log.name, "estimator": entrant, "failed": None}
     try:
-        result = _rival(log, entrant) if entrant in (RAW, *RIVALS) else run(log, entrant, settings)
+        if entrant == TOLD:
+            result = run(log, GPS_IMU, RECORDED[log.name])
+        else:
+            result = _rival(log, entrant) if entrant in (RAW, *RIVALS) else run(log, entrant, settings)
     except RuntimeError as error:  # GTSAM's, where a log does not determine its graph; ours raises none
         if entrant not in RIVALS:
             raise

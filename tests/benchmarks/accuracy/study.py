@@ -12,6 +12,7 @@ from tests.benchmarks.accuracy.goals import BOTH, by_cell, summary
 from tests.benchmarks.accuracy.pairs import against
 from tests.benchmarks.accuracy.scenarios import SCENARIOS
 from tests.benchmarks.accuracy.site import agora
+from tests.benchmarks.accuracy.told import TOLD
 from tests.benchmarks.accuracy.world import record
 from tracker.estimators import SENSORS, Settings
 from tracker.score import Figures
@@ -25,6 +26,8 @@ RIVALS = ("gtsam/batch", "gtsam/fixed-lag", "filterpy/imm", "vqf", "imufusion")
 #: Where raw GPS stands beside the precise filter: what only it takes in (landmarks, the ground) changes nothing for others.
 COMPARED = ("plain", "no-magnetometer", "understated", "outage", "walls", "disturbance", "turned-start")
 RIVALLED = ("plain", "outage")
+#: Where figures are missed without a camera.
+TOLD_IN = ("no-magnetometer", "three-taps", "stand-here")
 #: What measurements and figures are made by; tables and goals are not among it.
 _SOURCES = (
     "alignment",
@@ -37,6 +40,7 @@ _SOURCES = (
     "scenarios",
     "site",
     "terrain",
+    "told",
     "visitor",
     "world",
 )
@@ -45,6 +49,7 @@ _SOURCES = (
 def units(scenario: str, wanted: Sequence[str] = ()) -> list[str]:
     """Return what is run in a scenario; `wanted` chooses by name or by a part of it between slashes, nothing for all."""
     known = [*BOTH]
+    known += [TOLD] if scenario in TOLD_IN else []
     known += [RAW] if scenario in COMPARED else []
     known += [*PAPER, *RIVALS] if scenario in RIVALLED else []
     return [unit for unit in known if is_wanted(unit, wanted)]
@@ -103,7 +108,7 @@ def study_case(scenario: str, seed: int, unit: str, settings: Settings | None) -
 
 def kind_of(unit: str) -> str:
     """Return which sources a unit's results depend on: `precise`, `paper` or `rivals`."""
-    kind = unit.rpartition("/")[2]
+    kind = "precise" if unit == TOLD else unit.rpartition("/")[2]
     return kind if kind in ("precise", "paper") else "rivals"
 
 

@@ -28,6 +28,7 @@ COLUMNS = (
 MET = {"aim": "[green]aim[/]", "at least": "at least", "no": "[red]no[/]"}
 #: What a scenario is about: shown as "special".
 SPECIAL = {
+    "no-magnetometer": ("heading_walked_deg",),
     "outage": ("outage_end_m", "outage_added_m"),
     "disturbance": ("excursion_deg",),
     "three-taps": ("told_m", "told_heading_deg", "told_px"),

@@ -11,6 +11,7 @@ from tests.benchmarks.accuracy.figures import row_of
 from tests.benchmarks.accuracy.goals import CAMERA, GPS_IMU
 from tests.benchmarks.accuracy.scenarios import SCENARIOS
 from tests.benchmarks.accuracy.study import PAPER, RIVALS, SEEDS, key_of, kind_of, study, units
+from tests.benchmarks.accuracy.told import TOLD
 from tests.benchmarks.accuracy.world import Recording, record
 from tracker.estimators import Settings
 from tracker.precise.settings import PreciseSettings
@@ -25,7 +26,8 @@ def short() -> Recording:
 
 def test_the_plain_walks_are_everybodys() -> None:
     assert units("plain") == [GPS_IMU, CAMERA, RAW, *PAPER, *RIVALS]
-    assert units("three-taps") == [GPS_IMU, CAMERA]
+    assert units("three-taps") == [GPS_IMU, CAMERA, TOLD]
+    assert units("stand-here", ("precise",)) == [GPS_IMU, CAMERA]
     assert units("plain", ("precise",)) == [GPS_IMU, CAMERA]
     assert units("plain", (GPS_IMU, "gtsam")) == [GPS_IMU, "gtsam/batch", "gtsam/fixed-lag"]
     assert set(range(201, 300)).isdisjoint(SEEDS)
@@ -40,13 +42,14 @@ def test_results_are_kept_by_what_they_depend_on() -> None:
     assert key_of("paper", others) == key_of("paper")
 
 
-@pytest.mark.parametrize("unit", [GPS_IMU, "gps-imu/paper", RAW])
+@pytest.mark.parametrize("unit", [GPS_IMU, TOLD, "gps-imu/paper", RAW])
 def test_an_entrant_stays_with_the_walk(short: Recording, unit: str) -> None:
     for watched in run_unit(short, unit):
         row = row_of(short, watched)
         assert 0.0 < row["ate_m"] < 8.0
-        assert (row["cpu_us"] is not None) == (unit == GPS_IMU)
-        assert (row["prediction_deg"] is not None) == (unit == GPS_IMU)
+        assert (row["cpu_us"] is not None) == (unit in (GPS_IMU, TOLD))
+        assert (row["prediction_deg"] is not None) == (unit in (GPS_IMU, TOLD))
+        assert row["estimator"] == unit or unit.endswith("/paper")
 
 
 def test_a_study_is_written_and_what_was_run_is_read_again(tmp_path: Path) -> None:
