@@ -21,6 +21,8 @@ _MEDIANS = (1.386, 0.455)
 _LEAST_M = 0.3
 #: Chance makes a step so many times as long as usual once in tens of thousands.
 _LEAPS = 5.5
+#: No wall throws further aside; what does is refused by the filter, and believed where it insists, level, m.
+_FURTHEST_M = 20.0
 #: Who steps against the leap by so much, and by this share of it, is back.
 _BACK, _BACK_SHARE = 2.5, 0.5
 #: Fixes further apart than this say nothing of a leap.
@@ -60,7 +62,7 @@ class Leaps:
         self._level_m2.append(float(step_m[0] ** 2 + step_m[1] ** 2))
         self._up_m2.append(float(step_m[2] ** 2))
         step = step_m / usual_m
-        leaps = float(np.linalg.norm(step)) > _LEAPS
+        leaps = float(np.linalg.norm(step)) > _LEAPS and float(np.hypot(*step_m[:2])) < _FURTHEST_M
         if self._is_back(step):
             self._leap = _NONE
         elif leaps:

@@ -68,6 +68,12 @@ def test_who_stays_for_long_is_at_another_place() -> None:
     assert np.flatnonzero(aside(errors)).tolist() == list(range(40, 56))
 
 
+def test_what_no_wall_throws_is_no_leap() -> None:
+    errors = usual(8)
+    errors[40:50] += 10.0 * LEAP_M
+    assert not any(aside(errors))
+
+
 def test_after_a_silence_nobody_is_aside_and_nothing_is_a_leap() -> None:
     errors = usual(5)
     errors[40:] += LEAP_M
