@@ -41,10 +41,9 @@ class Leaps:
         self._last_m, self._last_ns = _NONE, 0
         self._leap, self._leapt_ns = _NONE, 0
 
-    @property
-    def is_aside(self) -> bool:
-        """Whether it has leapt, and not back yet."""
-        return bool(self._leap.any())
+    def is_aside(self, t_ns: int) -> bool:
+        """Whether it has leapt, and not back yet, as far as fixes of late can tell."""
+        return bool(self._leap.any()) and t_ns - self._last_ns <= _FAR_NS
 
     def take(self, t_ns: int, error_m: Matrix) -> Matrix:
         """Take a fix; return by how much it leaps, (3,) in site, m: zeros for an ordinary step.

@@ -107,7 +107,7 @@ class Receiver:
         self._has_walked = True  # or stands, as far as can be told: a velocity is better evidence than a way
         self._velocity_ns = measured.t_ns
         sigma = self._settings.gps_velocity_sigma_m_s
-        if self._leaps.is_aside:
+        if self._leaps.is_aside(measured.t_ns):
             sigma *= self._settings.gps_velocity_aside
         noise = np.diag([sigma**2, sigma**2, (1.5 * sigma) ** 2])
         return hypotheses.correct(

@@ -30,7 +30,7 @@ def aside(errors: Matrix, leaps: Leaps | None = None, from_s: int = 1) -> list[b
     leaps, found = leaps or Leaps(), []
     for second, error_m in enumerate(errors, from_s):
         leaps.take(second * S, error_m)
-        found.append(leaps.is_aside)
+        found.append(leaps.is_aside(second * S))
     return found
 
 
@@ -79,6 +79,8 @@ def test_after_a_silence_nobody_is_aside_and_nothing_is_a_leap() -> None:
     errors[40:] += LEAP_M
     leaps = Leaps()
     assert aside(errors[:45], leaps)[-1]
+    assert leaps.is_aside(46 * S)
+    assert not leaps.is_aside(60 * S), "of a receiver without fixes nothing is known"
     errors[45:] -= 5.0 * LEAP_M
     assert not any(aside(errors[45:], leaps, from_s=60))
 
