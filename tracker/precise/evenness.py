@@ -25,9 +25,9 @@ _KEPT_NS, _EVERY_NS, _ENOUGH, _LEAST_NS = 60_000_000_000, 200_000_000, 12, 3_000
 #: Level places nearer to each other than this are one: a receiver that tells the same again tells nothing, m.
 _SAME_M = 1e-3
 #: Fixes further apart than this say nothing of how evenly a receiver goes.
-_FAR_NS = 2_500_000_000
+FAR_NS = 2_500_000_000
 #: The medians of the sum of two squares of normal numbers, and of one.
-_MEDIANS = (1.386, 0.455)
+MEDIANS = (1.386, 0.455)
 #: No receiver is believed to err less: in white noise, and by the errors of the shorter correlation times, m.
 _LEAST_WHITE_M, _LEAST_M = 0.15, (0.5, 1.0)
 #: It must go so much more evenly than it claims before that is believed, and so much less evenly than is believed to lose that.
@@ -73,7 +73,7 @@ class Evenness:
         if self._last and not _goes_on(self._last[-1], (t_ns, p_site_m)):
             return False
         self._last = (*self._last[-2:], (t_ns, p_site_m))
-        if len(self._last) < 3 or any(b[0] - a[0] > _FAR_NS for a, b in pairwise(self._last)):
+        if len(self._last) < 3 or any(b[0] - a[0] > FAR_NS for a, b in pairwise(self._last)):
             return False
         bends = self._bends
         bends.append((t_ns, *_bend(self._last)))
@@ -120,7 +120,7 @@ def _bend(fixes: tuple[Timed, ...]) -> tuple[Bounds, Bounds]:
     by = second_s / first_s
     x, y, z = (r - q - by * (q - p) for p, q, r in zip(a, b, c, strict=True))
     white, grown = 1.0 + (1.0 + by) ** 2 + by**2, second_s + first_s * by**2
-    level, up = (x * x + y * y) / _MEDIANS[0], z * z / _MEDIANS[1]
+    level, up = (x * x + y * y) / MEDIANS[0], z * z / MEDIANS[1]
     return Bounds(level / white, level / grown), Bounds(up / white, up / grown)
 
 

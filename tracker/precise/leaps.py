@@ -12,11 +12,10 @@ from statistics import median
 import numpy as np
 
 from tracker.measurements import Matrix
+from tracker.precise.evenness import FAR_NS, MEDIANS
 
 #: So many steps are looked at to learn how long they usually are, and so many are enough.
 _KEPT, _ENOUGH = 60, 12
-#: The medians of the sum of two squares of normal numbers, and of one.
-_MEDIANS = (1.386, 0.455)
 #: No receiver is believed to step less, m.
 _LEAST_M = 0.3
 #: Chance makes a step so many times as long as usual once in tens of thousands.
@@ -25,8 +24,6 @@ _LEAPS = 5.5
 _FURTHEST_M = 20.0
 #: Who steps against the leap by so much, and by this share of it, is back.
 _BACK, _BACK_SHARE = 2.5, 0.5
-#: Fixes further apart than this say nothing of a leap.
-_FAR_NS = 2_500_000_000
 #: Who has not leapt back after this long is at another place.
 _STAYS_NS = 15_000_000_000
 _NONE = np.zeros(3)
@@ -43,7 +40,7 @@ class Leaps:
 
     def is_aside(self, t_ns: int) -> bool:
         """Whether it has leapt, and not back yet, as far as fixes of late can tell."""
-        return bool(self._leap.any()) and t_ns - self._last_ns <= _FAR_NS
+        return bool(self._leap.any()) and t_ns - self._last_ns <= FAR_NS
 
     def take(self, t_ns: int, error_m: Matrix) -> Matrix:
         """Take a fix; return by how much it leaps, (3,) in site, m: zeros for an ordinary step.
@@ -54,7 +51,7 @@ class Leaps:
         """
         step_m, since_ns = error_m - self._last_m, t_ns - self._last_ns
         self._last_m, self._last_ns = error_m, t_ns
-        if not 0 < since_ns <= _FAR_NS:
+        if not 0 < since_ns <= FAR_NS:
             self._leap = _NONE
             return _NONE
         usual_m = self._usual_m()
@@ -80,6 +77,6 @@ class Leaps:
             return np.full(3, inf)
         level_m, up_m = (
             max(sqrt(median(squares) / usual), _LEAST_M)
-            for squares, usual in zip((self._level_m2, self._up_m2), _MEDIANS, strict=True)
+            for squares, usual in zip((self._level_m2, self._up_m2), MEDIANS, strict=True)
         )
         return np.array([level_m, level_m, up_m])

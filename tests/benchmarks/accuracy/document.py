@@ -52,11 +52,11 @@ _METHOD = (
 )
 _TOLD = (
     "`gps-imu/told` is our filter without a camera, told what no filter can know: the true sizes and times of the receiver's "
-    "errors. It stands where a figure is missed without a camera; what it misses as well, these measurements do not hold."
+    "errors. It stands where a figure is missed without a camera; what it misses as well is not for want of knowing the receiver."
 )
 _TOLD_LOGS = (
-    "`gps-imu/told` knows how the simulated receivers of these recordings err. A walk of a minute or two is one draw of such an "
-    "error: where even this one is worse than raw GPS, the draw is an unlucky one."
+    "`gps-imu/told` knows the sizes and times of the errors of these recordings' simulated receivers, but not their echoes "
+    "and jumps. Where it, too, is worse than raw GPS, knowing more of them would not have helped."
 )
 _BAND = (
     "Consistency is the squared error by what the filter claims of it, for each dimension: one is honest, less is shy, "

@@ -1,4 +1,4 @@
-"""Our filter, told what no filter can know: how the receiver of a walk errs. What it misses as well, the measurements do not hold.
+"""Our filter, told what no filter can know: the sizes and times of a receiver's errors, but not when it spikes or echoes.
 
 It corrects in full (`settled_share`), for it is asked how near it comes, not how still it stands.
 """
