@@ -8,6 +8,7 @@ from tests.benchmarks.endurance import new_filter
 from tracker.geodesy import SiteFrame
 from tracker.measurements import GpsFix, GpsVelocity, Matrix, Vector3
 from tracker.precise.error_model import GPS_ERROR, P, V
+from tracker.precise.error_state import ErrorState
 from tracker.precise.hypotheses import Hypotheses
 from tracker.precise.leaps import Leaps
 from tracker.precise.receiver import Receiver
@@ -107,23 +108,22 @@ def standing(receiver: Receiver, hypotheses: Hypotheses, second: int, error_m: M
     receiver.take_velocity(hypotheses, GpsVelocity(t_ns, t_ns, v_m_s), REST)
 
 
-def beside_a_wall(settings: PreciseSettings, leap_m: Matrix, v_m_s: Vector3) -> Hypotheses:
+def beside_a_wall(leap_m: Matrix, v_m_s: Vector3) -> ErrorState:
     """Return the filter after a minute's rest and five seconds beside a wall."""
     hypotheses = Hypotheses(new_filter())
-    receiver = Receiver(settings, SITE, REST)
+    receiver = Receiver(PreciseSettings(), SITE, REST)
     errors = usual(7)
     for second in range(1, 61):
         standing(receiver, hypotheses, second, errors[second], REST)
     for second in range(61, 66):
         standing(receiver, hypotheses, second, errors[second] + leap_m, v_m_s)
     hypotheses.best.settle()
-    return hypotheses
+    return hypotheses.best
 
 
 def test_beside_a_wall_a_velocity_moves_little_and_the_leap_is_the_receivers() -> None:
     v: Vector3 = (0.3, -0.2, 0.0)
-    settings = PreciseSettings()
-    beside, far = beside_a_wall(settings, LEAP_M, v).best, beside_a_wall(settings, 0.0 * LEAP_M, v).best
+    beside, far = beside_a_wall(LEAP_M, v), beside_a_wall(0.0 * LEAP_M, v)
     assert np.hypot(*beside.nav.v_m_s[:2]) < 0.5 * np.hypot(*far.nav.v_m_s[:2])
     moved_m = np.hypot(*np.subtract(beside.nav.p_m, far.nav.p_m)[:2])
     assert moved_m < 0.25 * np.hypot(*LEAP_M[:2])
