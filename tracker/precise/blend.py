@@ -1,4 +1,8 @@
-"""What is shown follows a corrected filter smoothly: each correction is faded in, not jumped to."""
+"""What is shown follows a corrected filter smoothly: each correction is faded in, not jumped to.
+
+Who stands sees every move of the square, and it is given time; who walks sees none of a few millimetres, and what a correction
+has not brought yet is an error.
+"""
 
 from math import exp, hypot
 
@@ -20,8 +24,16 @@ class Blend:
     Kept at the filter's time it does not depend on when a measurement arrived, only on when it was made.
     """
 
-    def __init__(self, time_s: float, turn_time_s: float, lag_s: float) -> None:
-        """The decays of position and velocity, and of attitude; `lag_s` is how far behind what is shown the filter is."""
+    def __init__(self, time_s: float, walking_time_s: float, turn_time_s: float, lag_s: float) -> None:
+        """Begin with nothing to be faded in.
+
+        Args:
+            time_s: Decay of position and velocity while the rig stands.
+            walking_time_s: While it is moved.
+            turn_time_s: Decay of attitude.
+            lag_s: How far behind what is shown the filter is.
+        """
+        self._standing_time_s, self._walking_time_s = time_s, walking_time_s
         self._time_s, self._turn_time_s, self._lag_s = time_s, turn_time_s, lag_s
         self._t_ns = 0
         self._p_m = self._v_m_s = self._turn_rad = _ZERO
@@ -36,6 +48,16 @@ class Blend:
         self._p_m, self._v_m_s = (p, v) if hypot(*p) <= _LARGEST_M else (_ZERO, _ZERO)
         self._turn_rad = turn if hypot(*turn) <= _LARGEST_RAD else _ZERO
         self._t_ns = after.t_ns
+
+    def pace(self, t_ns: int, *, stands: bool) -> None:
+        """Go on from a time of the filter's as is right for who stands, or for who walks."""
+        time_s = self._standing_time_s if stands else self._walking_time_s
+        if time_s == self._time_s:
+            return
+        keep, keep_turn = self._left((t_ns - self._t_ns) * 1e-9)
+        self._p_m, self._v_m_s = _scaled(self._p_m, keep), _scaled(self._v_m_s, keep)
+        self._turn_rad = _scaled(self._turn_rad, keep_turn)
+        self._t_ns, self._time_s = max(t_ns, self._t_ns), time_s
 
     def shown(self, nav: Navigation, t_ns: int) -> Navigation:
         """Return the state, at its own time, that is to be carried on and shown at t_ns."""

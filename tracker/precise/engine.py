@@ -58,7 +58,7 @@ class Engine:
         self._settings = settings
         self._eye = Eye(settings, rig)
         x, y, z = rig.T_body_gps[:3, 3].tolist()
-        self._receiver = Receiver(settings, site, (x, y, z))
+        self._receiver = Receiver(settings, site, (x, y, z), memory)
         self._way = Way()
         self._landmarks = Landmarks(self._eye.lever_m, self._way)
         self._compass = compass
@@ -91,6 +91,11 @@ class Engine:
     def model(self) -> str:
         """The motion model that the controller has chosen."""
         return str(self._activity.model)
+
+    @property
+    def stands(self) -> bool:
+        """Whether the rig is where it was."""
+        return self._activity.stands
 
     # -- time ---------------------------------------------------------------------------------------------------------
 

@@ -69,6 +69,8 @@ class ErrorState:
         self.biases = biases
         self.covariance = covariance
         self.gps_error = np.zeros(9)
+        self.gps_sigma_m: Vector3 | None = None
+        """In units of which the receiver's error is; None until a receiver has claimed something."""
         self.magnetic_rad = 0.0
         self.clones: list[Clone] = []
         self._gravity = gravity_m_s2
@@ -292,34 +294,13 @@ class ErrorState:
         self.nav = self.nav._replace(p_m=p_site_m)
         self.restart_chunk()
 
-    def believe_receiver(self, shares_and_times: Matrix) -> None:
-        """Take the receiver's errors to be of these (see `ProcessNoise.receiver`) from now on; what is known of now is slow then.
-
-        Were the shorter errors only made smaller, those of now would fade within seconds, and with them the doubt of the place.
-        """
-        self.settle()
-        all_slow = np.zeros((9, 9))
-        all_slow[6:] = np.hstack([np.eye(3)] * 3)
-        cov = self.covariance
-        cov[GPS_ERROR, :] = all_slow @ cov[GPS_ERROR, :]
-        cov[:, GPS_ERROR] = cov[:, GPS_ERROR] @ all_slow.T
-        quick = np.arange(GPS_ERROR.start, GPS_ERROR.start + 6)
-        cov[quick, quick] = shares_and_times[0, :6]
-        self.gps_error = all_slow @ self.gps_error
-        self.noise.receiver = shares_and_times
-
-    def doubt_receiver(self, variances: Matrix) -> None:
-        """Let the receiver's quickest error be another one from now on: add (3,) variances, in units of its stated ones."""
-        self.settle()
-        quickest = np.arange(GPS_ERROR.start, GPS_ERROR.start + 3)
-        self.covariance[quickest, quickest] += variances
-
     def copied(self) -> "ErrorState":
         """Return a copy that shares nothing that changes."""
         self.settle()
         copy = ErrorState(self.settings, self.nav, self.biases, self.covariance.copy(), self._gravity)
         copy.noise.receiver = self.noise.receiver
-        copy.gps_error, copy.magnetic_rad, copy.clones = self.gps_error.copy(), self.magnetic_rad, list(self.clones)
+        copy.gps_error, copy.gps_sigma_m = self.gps_error.copy(), self.gps_sigma_m
+        copy.magnetic_rad, copy.clones = self.magnetic_rad, list(self.clones)
         return copy
 
     @property

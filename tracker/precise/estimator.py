@@ -89,7 +89,7 @@ class PreciseEstimator:
 
     def _new_blend(self) -> Blend:
         settings = self._settings
-        return Blend(settings.blend_s, settings.blend_turn_s, settings.lag_s)
+        return Blend(settings.blend_s, settings.blend_walking_s, settings.blend_turn_s, settings.lag_s)
 
     @property
     def name(self) -> str:
@@ -152,6 +152,7 @@ class PreciseEstimator:
         before, corrections, had_place = engine.best.nav, engine.hypotheses.corrections, engine.fix_ns is not None
         engine.take(measurement, following)
         after = engine.best.nav
+        self._blend.pace(after.t_ns, stands=engine.stands)
         is_said = isinstance(measurement, Sighting | Standpoint)  # who has asked for a correction wants to see it
         if is_said or (engine.fix_ns is not None and not had_place):
             self._blend = self._new_blend()

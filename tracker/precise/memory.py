@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from tracker.errors import MalformedInput
-from tracker.measurements import Matrix
+from tracker.measurements import Matrix, Vector3
 from tracker.precise.error_model import BA, BG, GPS_ERROR
 from tracker.precise.error_state import ErrorState
 from tracker.precise.navigation import Biases
@@ -23,9 +23,13 @@ from tracker.precise.settings import PreciseSettings
 KEPT = slice(BG.start, GPS_ERROR.stop)
 SIZE = KEPT.stop - KEPT.start
 _GYRO, _ACCEL, _RECEIVER = (slice(s.start - KEPT.start, s.stop - KEPT.start) for s in (BG, BA, GPS_ERROR))
-#: No sensor that a filter could live with is off by more: rad/s, m/s2, and the receiver by its own sigma.
-_LARGEST = np.array([0.5] * 3 + [5.0] * 3 + [30.0] * (SIZE - 6))
+#: No sensor that a filter could live with is off by more: rad/s, m/s2, and the receiver in units of its sigma, which may have been
+#: a hundred times as large when the error was told.
+_LARGEST = np.array([0.5] * 3 + [5.0] * 3 + [3000.0] * (SIZE - 6))
+_LARGEST_SIGMA_M = 1e4
 _LONGEST_TEXT = 65_536
+#: Memories of earlier versions lack it.
+_SIGMA = "receiver_sigma_m"
 _NAMES = {"gyro_bias_rad_s": _GYRO, "accel_bias_m_s2": _ACCEL, "receiver_error": _RECEIVER}
 
 
@@ -38,6 +42,8 @@ class Memory:
     """(15,): gyro bias (rad/s), accelerometer bias (m/s²), and the receiver's error in units of its stated sigma."""
     covariance: Matrix
     """(15, 15)."""
+    receiver_sigma_m: Vector3 | None = None
+    """That sigma; None where it was not kept."""
 
 
 def remember(state: ErrorState) -> Memory:
@@ -45,9 +51,8 @@ def remember(state: ErrorState) -> Memory:
     state.settle()
     mean = np.array([*state.biases.gyro_rad_s, *state.biases.accel_m_s2, *state.gps_error])
     covariance = state.covariance[KEPT, KEPT]
-    return Memory(
-        state.nav.t_ns, mean, 0.5 * (covariance + covariance.T)
-    )  # a prediction leaves it symmetric but for rounding
+    symmetric = 0.5 * (covariance + covariance.T)  # a prediction leaves it so but for rounding
+    return Memory(state.nav.t_ns, mean, symmetric, state.gps_sigma_m)
 
 
 def recall(state: ErrorState, memory: Memory) -> None:
@@ -57,7 +62,7 @@ def recall(state: ErrorState, memory: Memory) -> None:
     faded = _faded(memory, state.nav.t_ns, state.settings)
     (gx, gy, gz), (ax, ay, az) = faded.mean[_GYRO].tolist(), faded.mean[_ACCEL].tolist()
     state.biases = Biases((gx, gy, gz), (ax, ay, az))
-    state.gps_error = faded.mean[_RECEIVER].copy()
+    state.gps_error, state.gps_sigma_m = faded.mean[_RECEIVER].copy(), memory.receiver_sigma_m
     state.covariance[KEPT, :] = state.covariance[:, KEPT] = 0.0
     state.covariance[KEPT, KEPT] = faded.covariance
 
@@ -75,10 +80,16 @@ def _faded(memory: Memory, t_ns: int, settings: PreciseSettings) -> Memory:
         )
     )
     times_s = np.concatenate([2.0 * (spread / walk) ** 2, np.repeat(settings.gps_error_s, 3)])
-    steady = np.concatenate([spread**2, np.repeat(settings.gps_error_share, 3)])
     kept = np.exp(-(t_ns - memory.t_ns) * 1e-9 / times_s)
-    covariance = kept[:, None] * memory.covariance * kept + np.diag(steady * (1.0 - kept**2))
-    return Memory(t_ns, kept * memory.mean, covariance)
+    new = np.concatenate([spread**2 * (1.0 - kept[:6] ** 2), forgotten(memory, t_ns, settings)])
+    covariance = kept[:, None] * memory.covariance * kept + np.diag(new)
+    return Memory(t_ns, kept * memory.mean, covariance, memory.receiver_sigma_m)
+
+
+def forgotten(memory: Memory, t_ns: int, settings: PreciseSettings) -> Matrix:
+    """Return what a receiver's error varies by that has come up since it was remembered, (9,), in units of its stated variance."""
+    kept = np.exp(-max(0, t_ns - memory.t_ns) * 1e-9 / np.repeat(settings.gps_error_s, 3))
+    return np.asarray(np.repeat(settings.gps_error_share, 3) * (1.0 - kept**2))
 
 
 # -- as text ----------------------------------------------------------------------------------------------------------
@@ -90,6 +101,7 @@ def to_toml(memory: Memory) -> str:
         "# What this rig has learned of its sensors; it fades within minutes to hours. Delete it to begin anew.",
         f"t_ns = {memory.t_ns}",
         *(f"{name} = {memory.mean[where].tolist()}" for name, where in _NAMES.items()),
+        *([f"{_SIGMA} = {list(memory.receiver_sigma_m)}"] if memory.receiver_sigma_m else []),
         "covariance = [",
         *(f"    {row}," for row in memory.covariance.tolist()),
         "]",
@@ -109,7 +121,7 @@ def from_toml(text: str) -> Memory:
         table = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
         raise MalformedInput("A rig's memory is no TOML: delete the file, and it is written anew.") from error
-    if table.keys() != {"t_ns", "covariance", *_NAMES}:
+    if table.keys() - {_SIGMA} != {"t_ns", "covariance", *_NAMES}:
         raise MalformedInput(f"A rig's memory has {', '.join(table) or 'nothing'}, expected other names.")
     t_ns = table["t_ns"]
     if type(t_ns) is not int or not 0 <= t_ns < 2**63:
@@ -121,7 +133,14 @@ def from_toml(text: str) -> Memory:
     covariance = np.array([_row(row, SIZE) for row in rows])
     if np.any(np.abs(mean) > _LARGEST) or not _is_covariance(covariance):
         raise MalformedInput("A rig's memory holds numbers that no sensor can have.")
-    return Memory(t_ns, mean, covariance)
+    return Memory(t_ns, mean, covariance, _sigma(table[_SIGMA]) if _SIGMA in table else None)
+
+
+def _sigma(values: Any) -> Vector3:
+    x, y, z = _row(values, 3).tolist()
+    if not 0.0 < min(x, y, z) <= max(x, y, z) < _LARGEST_SIGMA_M:
+        raise MalformedInput("A rig's memory holds a claim that no receiver makes.")
+    return x, y, z
 
 
 def _row(values: Any, length: int) -> Matrix:

@@ -7,18 +7,22 @@ import numpy as np
 from tracker.fixes import variance_m2
 from tracker.geodesy import SiteFrame
 from tracker.measurements import GpsFix, GpsVelocity, Vector3
-from tracker.precise import observations
+from tracker.precise import observations, receiver_error
+from tracker.precise.claims import Claims
 from tracker.precise.doubt import Doubt
 from tracker.precise.error_state import ErrorState
 from tracker.precise.evenness import Evenness
 from tracker.precise.hypotheses import Hypotheses
 from tracker.precise.insistence import Insistence
 from tracker.precise.leaps import Leaps
+from tracker.precise.memory import Memory, forgotten
 from tracker.precise.settings import PreciseSettings
 from tracker.precise.update import Correction
 
 #: Who has been so far from where the receiver was first has walked: then motion tells north.
 _WALKED_M = 6.0
+#: Who claims to be off by more than this tells nothing, however much more.
+_NOTHING_M = 1000.0
 #: A receiver that was silent for longer than its usual second leaves the filter blind.
 _BLIND_NS = 2_500_000_000
 
@@ -26,8 +30,10 @@ _BLIND_NS = 2_500_000_000
 class Receiver:
     """The antenna on its rig, and all that is remembered of what it told."""
 
-    def __init__(self, settings: PreciseSettings, site: SiteFrame, lever_body_m: Vector3) -> None:
-        """`lever_body_m` is where the antenna is in the body."""
+    def __init__(
+        self, settings: PreciseSettings, site: SiteFrame, lever_body_m: Vector3, memory: Memory | None = None
+    ) -> None:
+        """`lever_body_m` is where the antenna is in the body; `memory` what the filter began with."""
         self._settings, self._site, self._lever_m = settings, site, lever_body_m
         self.fix_ns: int | None = None
         """Of the last fix taken in."""
@@ -36,6 +42,8 @@ class Receiver:
         self._evenness = Evenness(settings)
         self._doubt = Doubt(settings)
         self._leaps = Leaps()
+        self._claims = Claims()
+        self._memory = memory
         self._first_fix_m: Vector3 | None = None
         self._has_walked = False
 
@@ -51,6 +59,8 @@ class Receiver:
         """Begin at a first fix, of which the receiver's own error is left open."""
         for filter_ in hypotheses.filters:
             filter_.place(self._place_of(fix), forget_receiver=False)
+            if self._memory is not None:
+                receiver_error.restate(filter_, self._sigma_of(fix), forgotten(self._memory, fix.t_ns, self._settings))
 
     def take_fix(self, hypotheses: Hypotheses, fix: GpsFix, walked_m: Vector3) -> None:
         """Correct by a fix; one that is refused again and again is believed after all.
@@ -60,21 +70,20 @@ class Receiver:
             fix: What the receiver says.
             walked_m: The way so far in site axes, corrections left out.
         """
-        settings = self._settings
         p = self._place_of(fix)
-        var = variance_m2(fix, settings.gps_floor_m, settings.gps_sigma_m)
-        ex, ey, ez = (sqrt(v * settings.gps_inflation) for v in var)
-        sigma = (ex, ey, ez)
+        sigma, noisier_m2 = self._claims.take(self._sigma_of(fix))
+        for filter_ in hypotheses.filters:
+            receiver_error.restate(filter_, sigma)
         if self._evenness.take(fix.t_ns, p, sigma):
             for filter_ in hypotheses.filters:
-                filter_.believe_receiver(self._evenness.errors)
-        noise = np.diag(self._evenness.white_share * np.square(sigma))
+                receiver_error.believe(filter_, self._evenness.errors)
+        noise = np.diag(self._evenness.white_share * np.square(sigma) + noisier_m2)
         self._note_way(p)
         hypotheses.best.settle()
         leap_m = self._leaps.take(fix.t_ns, np.subtract(p, walked_m) - hypotheses.best.R_site_body @ self._lever_m)
         if leap_m.any() and fix.t_ns - self._velocity_ns <= _BLIND_NS:  # else fixes alone hold the inertial unit
             for filter_ in hypotheses.filters:
-                filter_.doubt_receiver(np.square(leap_m / sigma))
+                receiver_error.doubt(filter_, np.square(leap_m / sigma))
         share = self._doubt.share(fix.t_ns, hypotheses.best.covariance)
         done = hypotheses.correct(
             lambda f: f.correct(
@@ -88,7 +97,7 @@ class Receiver:
         self.fix_ns = fix.t_ns
         if done is None or done.used:
             self._insistence.accepted()
-        elif self._insistence.believes(fix.t_ns, p, hypotheses.best.nav.p_m, max(ex, ey)):
+        elif self._insistence.believes(fix.t_ns, p, hypotheses.best.nav.p_m, max(sigma[:2])):
             for filter_ in hypotheses.filters:
                 filter_.place(p)
                 filter_.correct(*observations.gps_position(filter_, p, sigma, self._lever_m), noise)
@@ -96,6 +105,13 @@ class Receiver:
 
     def _place_of(self, fix: GpsFix) -> Vector3:
         return self._site.site_from_geodetic(fix.lat_deg, fix.lon_deg, fix.h_ellipsoid_m)
+
+    def _sigma_of(self, fix: GpsFix) -> Vector3:
+        settings = self._settings
+        x, y, z = settings.gps_sigma_m
+        var = variance_m2(fix, settings.gps_floor_m, (x * x, y * y, z * z))
+        sx, sy, sz = (min(sqrt(v * settings.gps_inflation), _NOTHING_M) for v in var)
+        return sx, sy, sz
 
     def _note_way(self, p_site_m: Vector3) -> None:
         self._first_fix_m = self._first_fix_m or p_site_m

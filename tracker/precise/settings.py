@@ -83,10 +83,12 @@ class PreciseSettings:
     """Per dimension: a feature that is further off slid along an outline, or moves by itself."""
     feature_pictures: int = 16
     """A feature is followed over so many held pictures at most, and then has told what it can."""
-    blend_s: float = 2.2
-    """A correction moves what is shown with this time constant: a temple that jumps is worse than one that is off."""
+    blend_s: float = 3.0
+    """A correction moves what is shown with this time constant: a temple that jumps is worse than one that is off;"""
+    blend_walking_s: float = 1.2
+    """with this one for who walks, and sees no temple jump by centimetres,"""
     blend_turn_s: float = 0.6
-    """... and with this one it turns what is shown."""
+    """and with this one it turns what is shown."""
     hypotheses: int = 8
     """So many headings are tried where motion must tell north."""
     converged_rad: float = 5.0 * pi / 180.0

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from tests.benchmarks.accuracy.redrawn import errors_m
 from tests.benchmarks.endurance import new_filter
 from tracker.measurements import Matrix, Vector3
+from tracker.precise import receiver_error
 from tracker.precise.error_model import GPS_ERROR, P
 from tracker.precise.evenness import Evenness
 from tracker.precise.settings import PreciseSettings
@@ -88,7 +89,7 @@ def test_another_belief_moves_neither_the_place_nor_what_is_known_of_it() -> Non
     H[:, GPS_ERROR] = np.hstack([2.0 * np.eye(3)] * 3)
     before, p_m, error = state.covariance.copy(), state.nav.p_m, state.gps_error.reshape(3, 3).sum(axis=0)
     quick = np.array([0.01, 0.01, 0.02, 0.03, 0.03, 0.04])
-    state.believe_receiver(np.array([[*quick, 0.9, 0.9, 0.9], [15.0] * 3 + [90.0] * 3 + [3600.0] * 3]))
+    receiver_error.believe(state, np.array([[*quick, 0.9, 0.9, 0.9], [15.0] * 3 + [90.0] * 3 + [3600.0] * 3]))
     assert state.nav.p_m == p_m
     assert state.gps_error.reshape(3, 3).sum(axis=0) == pytest.approx(error)
     assert state.covariance[P, P] == pytest.approx(before[P, P])

@@ -7,6 +7,7 @@ from tests.benchmarks.accuracy.redrawn import errors_m
 from tests.benchmarks.endurance import new_filter
 from tracker.geodesy import SiteFrame
 from tracker.measurements import GpsFix, GpsVelocity, Matrix, Vector3
+from tracker.precise import receiver_error
 from tracker.precise.error_model import GPS_ERROR, P, V
 from tracker.precise.error_state import ErrorState
 from tracker.precise.hypotheses import Hypotheses
@@ -133,7 +134,7 @@ def test_beside_a_wall_a_velocity_moves_little_and_the_leap_is_the_receivers() -
 def test_what_is_doubted_of_the_receiver_is_not_doubted_of_the_place() -> None:
     state = new_filter()
     before = state.covariance.copy()
-    state.doubt_receiver(np.array([4.0, 1.0, 2.0]))
+    receiver_error.doubt(state, np.array([4.0, 1.0, 2.0]))
     added = state.covariance - before
     assert np.diag(added)[GPS_ERROR].tolist() == [4.0, 1.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     assert np.count_nonzero(added) == 3

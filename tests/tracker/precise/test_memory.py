@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from tracker.errors import MalformedInput
-from tracker.precise import observations
+from tracker.precise import observations, receiver_error
 from tracker.precise.error_model import BG, GPS_ERROR, THETA, P, start_covariance
 from tracker.precise.error_state import ErrorState
-from tracker.precise.memory import KEPT, SIZE, Memory, from_toml, recall, remember, to_toml
+from tracker.precise.memory import KEPT, SIZE, Memory, forgotten, from_toml, recall, remember, to_toml
 from tracker.precise.navigation import Biases, Navigation
 from tracker.precise.settings import PreciseSettings
 
@@ -116,17 +116,49 @@ def test_it_changes_what_the_first_fix_means() -> None:
 
 
 def test_as_text_it_is_the_same_to_the_last_bit() -> None:
-    state = aligned()
+    state = claiming()
     for step in range(1, 200):
         state.advance(step * 5_000_000, (0.1, -0.2, 0.3), (0.5, 1.0, 9.8))
     kept = remember(state)
     again = from_toml(to_toml(kept))
-    assert again.t_ns == kept.t_ns
+    assert (again.t_ns, again.receiver_sigma_m) == (kept.t_ns, kept.receiver_sigma_m)
     assert np.array_equal(again.mean, kept.mean)
     assert np.array_equal(again.covariance, kept.covariance)
 
 
-TEXT = to_toml(memory())
+def test_in_metres_the_receiver_is_as_far_off_whatever_it_claims_at_the_next_start() -> None:
+    """It claims 8 m, before it has seen many satellites: what is remembered is 3 m, and what is forgotten is of those 8."""
+    old, claimed_m = aligned(), (8.0, 8.0, 16.0)
+    receiver_error.restate(old, FIX_SIGMA_M)
+    kept = remember(old)
+    for after_s in (0, 60, 24 * 3600):
+        state, t_ns = fresh(after_s * S), after_s * S
+        recall(state, kept)
+        faded = state.gps_error * np.tile(FIX_SIGMA_M, 3)
+        receiver_error.restate(state, claimed_m, forgotten(kept, t_ns, SETTINGS))
+        assert state.gps_error * np.tile(claimed_m, 3) == pytest.approx(faded)
+        assert np.linalg.eigvalsh(state.covariance).min() > 0.0
+        variances = np.diag(state.covariance)[GPS_ERROR] * np.tile(claimed_m, 3) ** 2
+        if after_s == 0:
+            assert variances == pytest.approx(np.diag(old.covariance)[GPS_ERROR] * np.tile(FIX_SIGMA_M, 3) ** 2)
+    assert variances == pytest.approx(np.repeat(SETTINGS.gps_error_share, 3) * np.tile(claimed_m, 3) ** 2, rel=1e-3)
+
+
+def test_a_memory_of_an_earlier_version_is_read() -> None:
+    text = re.sub(r"receiver_sigma_m = .*\n", "", TEXT)
+    assert text != TEXT
+    kept = from_toml(text)
+    assert kept.receiver_sigma_m is None
+    assert np.array_equal(kept.mean, from_toml(TEXT).mean)
+
+
+def claiming() -> ErrorState:
+    state = aligned()
+    receiver_error.restate(state, FIX_SIGMA_M)
+    return state
+
+
+TEXT = to_toml(remember(claiming()))
 ROW = re.search(r"^    \[.*\],$", TEXT, re.MULTILINE)
 assert ROW is not None
 
@@ -146,6 +178,9 @@ assert ROW is not None
         TEXT.replace("t_ns = 0", f"t_ns = {2**63}"),
         TEXT.replace("gyro_bias_rad_s = [", "gyro_bias_rad_s = [0.0, "),
         TEXT.replace("receiver_error = [", "receiver_error = ['a', "),
+        re.sub(r"receiver_sigma_m = .*", "receiver_sigma_m = [1.0, 1.0]", TEXT),
+        re.sub(r"receiver_sigma_m = .*", "receiver_sigma_m = [1.0, 0.0, 1.0]", TEXT),
+        re.sub(r"receiver_sigma_m = .*", "receiver_sigma_m = [1.0, 1.0, 20000.0]", TEXT),
         re.sub(r"gyro_bias_rad_s = .*", "gyro_bias_rad_s = [nan, 0.0, 0.0]", TEXT),
         re.sub(r"gyro_bias_rad_s = .*", "gyro_bias_rad_s = [inf, 0.0, 0.0]", TEXT),
         re.sub(r"gyro_bias_rad_s = .*", f"gyro_bias_rad_s = [{10**400}, 0, 0]", TEXT),
@@ -158,7 +193,7 @@ assert ROW is not None
         TEXT.replace(ROW.group(), f"    {[1e-9] + [1.0] * (SIZE - 1)},", 1),
         re.sub(r"covariance = \[.*\]", "covariance = 1", TEXT, flags=re.DOTALL),
     ],
-    ids=range(23),
+    ids=range(26),
 )
 def test_broken_or_hostile_text_is_refused(text: str) -> None:
     assert text != TEXT

@@ -1,7 +1,7 @@
 """What a node's measurements say of its state, as GTSAM's factors: the receiver with its slow errors, and walkers that stand.
 
 GTSAM's own GPS factors know no correlated error; these hold the state of `tracker/precise/error_model.py`: nine numbers in units of
-the stated sigma, three correlation times for each axis.
+what is usually claimed, three correlation times for each axis.
 """
 
 from collections.abc import Callable
@@ -35,7 +35,7 @@ def cauchy(sigmas: Matrix, beyond: float) -> gtsam.noiseModel.Base:
 
 
 def gps_position(
-    pose: int, error: int, p_site_m: Vector3, sigma_m: Vector3, white: float, lever_body_m: Matrix
+    pose: int, error: int, p_site_m: Vector3, sigma_m: Vector3, white_m2: Matrix, lever_body_m: Matrix
 ) -> gtsam.NonlinearFactor:
     """Return the factor of a fix of the antenna.
 
@@ -43,8 +43,8 @@ def gps_position(
         pose: Key of the body's pose.
         error: Key of the receiver's error, (9,).
         p_site_m: The fix.
-        sigma_m: Its standard deviations.
-        white: Share of the variance that is not in the error states.
+        sigma_m: In units of which the error is.
+        white_m2: (3,) variances of what is not in the error states.
         lever_body_m: (3,) the antenna on the body.
     """
     measured, sigma = np.array(p_site_m), np.array(sigma_m)
@@ -61,7 +61,7 @@ def gps_position(
             T_site_body.translation() + R @ lever_body_m + by_error @ values.atVector(error) - measured, float
         )
 
-    return gtsam.CustomFactor(cauchy(np.sqrt(white) * sigma, FIX), [pose, error], residual)
+    return gtsam.CustomFactor(cauchy(np.sqrt(white_m2), FIX), [pose, error], residual)
 
 
 def gps_velocity(
@@ -86,14 +86,19 @@ def error_start(error: int, settings: PreciseSettings) -> gtsam.NonlinearFactor:
     return gtsam.PriorFactorVector(error, np.zeros(9), gtsam.noiseModel.Diagonal.Sigmas(sigmas))
 
 
-def error_transition(before: int, after: int, dt_s: float, settings: PreciseSettings) -> gtsam.NonlinearFactor:
-    """Return the first-order Gauss-Markov step of the receiver's error; linear, so that it costs no call of Python."""
+def error_transition(
+    before: int, after: int, dt_s: float, by: Matrix, settings: PreciseSettings
+) -> gtsam.NonlinearFactor:
+    """Return the first-order Gauss-Markov step of the receiver's error; linear, so that it costs no call of Python.
+
+    `by`, (3,), is what the error before is multiplied by to be in units of what is claimed after: it is the same in metres.
+    """
     kept = np.exp(-dt_s / np.repeat(settings.gps_error_s, 3))
     sigmas = np.sqrt(np.repeat(settings.gps_error_share, 3) * (1.0 - kept**2))
     origin = gtsam.Values()
     origin.insert(before, np.zeros(9))
     origin.insert(after, np.zeros(9))
     step = gtsam.JacobianFactor(
-        before, -np.diag(kept), after, np.eye(9), np.zeros(9), gtsam.noiseModel.Diagonal.Sigmas(sigmas)
+        before, -np.diag(kept * np.tile(by, 3)), after, np.eye(9), np.zeros(9), gtsam.noiseModel.Diagonal.Sigmas(sigmas)
     )
     return gtsam.LinearContainerFactor(step, origin)

@@ -92,9 +92,8 @@ class FixedLag:
         before, node = self._nodes[-2:]
         bias = old.atConstantBias(walk.bias_key(index - 1))
         motion = walk.motion_to(index, self._nodes, track, bias, self._believed)
-        dt_s = (node.t_ns - before.t_ns) * 1e-9
         graph = gtsam.NonlinearFactorGraph()
-        for factor in walk.motion_factors(index, dt_s, motion, self._believed):
+        for factor in walk.motion_factors(index, before, node, motion, self._believed):
             graph.push_back(factor)
         for factor in walk.node_factors(index, node, track, bias, self._believed):
             graph.push_back(factor)

@@ -113,13 +113,14 @@ def start_factors(index: int, pose: gtsam.Pose3, believed: Believed) -> list[gts
 
 
 def motion_factors(
-    index: int, dt_s: float, motion: gtsam.PreintegratedCombinedMeasurements, believed: Believed
+    index: int, last: Node, node: Node, motion: gtsam.PreintegratedCombinedMeasurements, believed: Believed
 ) -> list[gtsam.NonlinearFactor]:
-    """Return what connects a node with the one before it."""
+    """Return what connects a node with the last one, before it."""
     before, after = keys(index - 1), keys(index)
+    by = np.ones(3) if last.sigma_m is None or node.sigma_m is None else np.divide(last.sigma_m, node.sigma_m)
     return [
         gtsam.CombinedImuFactor(before[0], before[1], after[0], after[1], before[2], after[2], motion),
-        factors.error_transition(before[3], after[3], dt_s, believed.settings),
+        factors.error_transition(before[3], after[3], (node.t_ns - last.t_ns) * 1e-9, by, believed.settings),
     ]
 
 
@@ -136,7 +137,7 @@ def node_factors(
                 error_key(index),
                 node.fix.p_site_m,
                 node.fix.sigma_m,
-                white,
+                white * np.square(node.fix.sigma_m) + node.fix.noisier_m2,
                 believed.lever_body_m,
             )
         )
@@ -200,8 +201,7 @@ def whole(
     found = start_factors(0, values.atPose3(pose_key(0)), believed)
     for index, node in enumerate(nodes):
         if index > 0:
-            dt_s = (node.t_ns - nodes[index - 1].t_ns) * 1e-9
-            found += motion_factors(index, dt_s, motions[index - 1], believed)
+            found += motion_factors(index, nodes[index - 1], node, motions[index - 1], believed)
         found += node_factors(index, node, track, values.atConstantBias(bias_key(index)), believed)
     graph = gtsam.NonlinearFactorGraph()
     for factor in found:

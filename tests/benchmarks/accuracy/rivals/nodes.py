@@ -8,7 +8,8 @@ from tests.benchmarks.accuracy.rivals.track import InertialTrack
 from tracker.estimator import Origin
 from tracker.fixes import variance_m2
 from tracker.geodesy import SiteFrame, gravity_m_s2
-from tracker.measurements import GpsFix, GpsVelocity, ImuSample, Measurement, Vector3
+from tracker.measurements import GpsFix, GpsVelocity, ImuSample, Matrix, Measurement, Vector3
+from tracker.precise.claims import Claims
 from tracker.precise.settings import PreciseSettings
 
 #: Nodes are at least so far apart: a receiver of 18 Hz says little more than one of 2 Hz, its errors being the same.
@@ -21,10 +22,13 @@ START_NS, GRACE_NS = 500_000_000, 10_000_000
 
 @dataclass(frozen=True)
 class Fix:
-    """A position of the antenna, and its standard deviations as the graph takes them."""
+    """A position of the antenna."""
 
     p_site_m: Vector3
     sigma_m: Vector3
+    """What its receiver usually claims, as the graph takes it: the error that lasts is in units of it."""
+    noisier_m2: Matrix
+    """(3,) variances by which it is noisier than usual."""
 
 
 @dataclass
@@ -33,6 +37,8 @@ class Node:
 
     t_ns: int
     fix: Fix | None = None
+    sigma_m: Vector3 | None = None
+    """Of the last fix until then; None before the first."""
     v_site_m_s: Vector3 | None = None
     """Of the antenna."""
 
@@ -46,6 +52,8 @@ class Nodes:
         self._waiting: list[tuple[int, int, GpsFix | GpsVelocity]] = []
         """Stamp, the newest inertial stamp when it came, and what came; ordered by stamp."""
         self._last_ns: int | None = None
+        self._claims = Claims()
+        self._sigma_m: Vector3 | None = None
 
     def add(self, measurement: Measurement) -> list[Node]:
         """Take a measurement; return the nodes that are complete with it, oldest first."""
@@ -88,6 +96,8 @@ class Nodes:
                 node.v_site_m_s = measurement.v_enu_m_s
             else:
                 node.fix = self._fix(measurement)
+                self._sigma_m = node.fix.sigma_m
+        node.sigma_m = self._sigma_m
         return node
 
     def _fix(self, fix: GpsFix) -> Fix:
@@ -95,7 +105,8 @@ class Nodes:
         x, y, z = settings.gps_sigma_m
         var = variance_m2(fix, settings.gps_floor_m, (x * x, y * y, z * z))
         sx, sy, sz = (sqrt(v * settings.gps_inflation) for v in var)
-        return Fix(self._site.site_from_geodetic(fix.lat_deg, fix.lon_deg, fix.h_ellipsoid_m), (sx, sy, sz))
+        usual, noisier_m2 = self._claims.take((sx, sy, sz))
+        return Fix(self._site.site_from_geodetic(fix.lat_deg, fix.lon_deg, fix.h_ellipsoid_m), usual, noisier_m2)
 
 
 def _is_good(measurement: GpsFix | GpsVelocity) -> bool:

@@ -37,7 +37,7 @@ def antenna_m_s(at: gtsam.Values) -> Matrix:
 
 def position_factor(p_m: Matrix) -> gtsam.NonlinearFactor:
     x, y, z = p_m.tolist()
-    return gps_position(POSE, ERROR, (x, y, z), SIGMA_M, 0.06, LEVER_M)
+    return gps_position(POSE, ERROR, (x, y, z), SIGMA_M, 0.06 * np.square(SIGMA_M), LEVER_M)
 
 
 def velocity_factor(v_m_s: Matrix) -> gtsam.NonlinearFactor:
@@ -90,8 +90,19 @@ def test_the_receivers_error_keeps_its_variance_and_forgets_by_its_times() -> No
     settings = PreciseSettings()
     graph, at = gtsam.NonlinearFactorGraph(), values()
     graph.push_back(error_start(ERROR, settings))
-    graph.push_back(error_transition(ERROR, LATER, 60.0, settings))
+    graph.push_back(error_transition(ERROR, LATER, 60.0, np.ones(3), settings))
     joint = gtsam.Marginals(graph, at).jointMarginalCovariance([ERROR, LATER])
     share = np.repeat(settings.gps_error_share, 3)
     assert np.diag(joint.at(LATER, LATER)) == pytest.approx(share)
     assert np.diag(joint.at(ERROR, LATER)) == pytest.approx(share * np.exp(-60.0 / np.repeat(settings.gps_error_s, 3)))
+
+
+def test_in_metres_what_lasts_of_the_receivers_error_is_the_same_whatever_it_claims() -> None:
+    settings, by = PreciseSettings(), np.tile([0.5, 2.0, 1.0], 3)
+    graph, at = gtsam.NonlinearFactorGraph(), values()
+    graph.push_back(error_start(ERROR, settings))
+    graph.push_back(error_transition(ERROR, LATER, 60.0, by[:3], settings))
+    joint = gtsam.Marginals(graph, at).jointMarginalCovariance([ERROR, LATER])
+    share, kept = np.repeat(settings.gps_error_share, 3), np.exp(-60.0 / np.repeat(settings.gps_error_s, 3))
+    assert np.diag(joint.at(ERROR, LATER)) == pytest.approx(share * kept * by)
+    assert np.diag(joint.at(LATER, LATER)) == pytest.approx(share * ((kept * by) ** 2 + 1.0 - kept**2))
