@@ -1,4 +1,4 @@
-"""Geodetic coordinates to ECEF (the paper's eqs. 2 and 3) and to the site's ENU frame, and gravity; nothing else.
+"""Geodetic coordinates to ECEF (the paper's eqs. 2 and 3) and to the site's ENU frame; gravity, and how the Earth turns.
 
 ECEF never leaves this file: rotating or filtering ECEF coordinates turns metres into kilometres of lever arm.
 """
@@ -13,6 +13,8 @@ from tracker.measurements import Matrix, Vector3
 #: Equatorial radius, m, and squared eccentricity of WGS84; the paper prints 6,378,137 m and 6.69437999e-3.
 WGS84_A_M = 6_378_137.0
 WGS84_E2 = 6.694_379_990_14e-3
+#: The Earth's rate of turning, WGS84.
+EARTH_RAD_S = 7.292_115e-5
 
 
 def prime_vertical_radius_m(lat_rad: float) -> float:
@@ -92,3 +94,9 @@ def gravity_m_s2(lat_deg: float, h_ellipsoid_m: float) -> float:
     sine2 = sin(radians(lat_deg)) ** 2
     surface = 9.7803253359 * (1.0 + 0.00193185265241 * sine2) / sqrt(1.0 - WGS84_E2 * sine2)
     return surface - 3.086e-6 * h_ellipsoid_m
+
+
+def earth_rate_rad_s(lat_deg: float) -> Vector3:
+    """Return how the Earth turns, site axes: a gyroscope feels it, a sixth of a degree in 40 s, wherever the rig faces."""
+    lat = radians(lat_deg)
+    return (0.0, EARTH_RAD_S * cos(lat), EARTH_RAD_S * sin(lat))

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from pyproj import Transformer
 
 from tracker.estimator import Origin
-from tracker.geodesy import SiteFrame, ecef_from_geodetic, geodetic_from_ecef, gravity_m_s2
+from tracker.geodesy import SiteFrame, earth_rate_rad_s, ecef_from_geodetic, geodetic_from_ecef, gravity_m_s2
 
 EPHESUS = Origin(37.9366, 27.3447, 88.4)
 PROJ = Transformer.from_crs("EPSG:4979", "EPSG:4978", always_xy=True)
@@ -53,3 +53,10 @@ def test_gravity() -> None:
     assert gravity_m_s2(0.0, 0.0) == pytest.approx(9.7803, abs=1e-4)
     assert gravity_m_s2(90.0, 0.0) == pytest.approx(9.8322, abs=1e-4)
     assert gravity_m_s2(37.94, 88.0) == pytest.approx(9.8001, abs=5e-4)
+
+
+@pytest.mark.parametrize(
+    ("lat_deg", "turns"), [(90.0, (0.0, 0.0, 1.0)), (0.0, (0.0, 1.0, 0.0)), (-90.0, (0.0, 0.0, -1.0))]
+)
+def test_the_earth_turns_once_in_a_sidereal_day(lat_deg: float, turns: tuple[float, float, float]) -> None:
+    assert np.array(earth_rate_rad_s(lat_deg)) * 86_164.1 / (2.0 * np.pi) == pytest.approx(turns, abs=1e-5)

@@ -16,6 +16,7 @@ from tracker.measurements import (
     MagSample,
     Sighting,
     Standpoint,
+    Vector3,
     VisualMotion,
 )
 from tracker.precise import observations
@@ -51,6 +52,7 @@ class Engine:
         rig: Rig,
         compass: Compass,
         gravity_m_s2: float,
+        earth_rad_s: Vector3,
         eyes_z_m: EyeHeight | None = None,
         memory: Memory | None = None,
     ) -> None:
@@ -64,7 +66,7 @@ class Engine:
         self._compass = compass
         self._activity = Activity()
         self._stride = Stride()
-        self._start = Start(settings, gravity_m_s2, memory)
+        self._start = Start(settings, gravity_m_s2, earth_rad_s, memory)
         self._last: ImuSample | None = None
         self._counted_ns = 0
         self._after_gap: AfterGap | None = None

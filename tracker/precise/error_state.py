@@ -61,9 +61,15 @@ class ErrorState:
     """One filter, at one time."""
 
     def __init__(
-        self, settings: PreciseSettings, nav: Navigation, biases: Biases, covariance: Matrix, gravity_m_s2: float
+        self,
+        settings: PreciseSettings,
+        nav: Navigation,
+        biases: Biases,
+        covariance: Matrix,
+        gravity_m_s2: float,
+        earth_rad_s: Vector3 = (0.0, 0.0, 0.0),
     ) -> None:
-        """`covariance` is (34, 34), without clones."""
+        """`covariance` is (34, 34), without clones; `earth_rad_s` how the site turns, which the gyroscope feels."""
         self.settings = settings
         self.nav = nav
         self.biases = biases
@@ -74,6 +80,7 @@ class ErrorState:
         self.magnetic_rad = 0.0
         self.clones: list[Clone] = []
         self._gravity = gravity_m_s2
+        self.earth_rad_s = earth_rad_s
         self.noise = ProcessNoise(settings)
         self.restart_chunk()
 
@@ -120,7 +127,8 @@ class ErrorState:
         cov[_V_P] += half
         self.gps_error = keep[:9] * self.gps_error
         self.magnetic_rad *= float(keep[9])
-        self._chunk_nav, self._chunk_R = end, R_end
+        self.nav = _turned_back(end, self.earth_rad_s, dt)
+        self._chunk_nav, self._chunk_R = self.nav, R_end
 
     def _lean(self, R_site_body: Matrix, turned_rad: Vector3, gained_m_s: Matrix, dt_s: float) -> None:
         """Add to the motion what the gyroscope's axes are unsure of; `turned_rad` is in site."""
@@ -297,7 +305,7 @@ class ErrorState:
     def copied(self) -> "ErrorState":
         """Return a copy that shares nothing that changes."""
         self.settle()
-        copy = ErrorState(self.settings, self.nav, self.biases, self.covariance.copy(), self._gravity)
+        copy = ErrorState(self.settings, self.nav, self.biases, self.covariance.copy(), self._gravity, self.earth_rad_s)
         copy.noise.receiver = self.noise.receiver
         copy.gps_error, copy.gps_sigma_m = self.gps_error.copy(), self.gps_sigma_m
         copy.magnetic_rad, copy.clones = self.magnetic_rad, list(self.clones)
@@ -307,6 +315,13 @@ class ErrorState:
     def R_site_body(self) -> Matrix:
         """(3, 3)."""
         return matrix_from_wxyz(self.nav.wxyz_site_body)
+
+
+def _turned_back(nav: Navigation, earth_rad_s: Vector3, dt_s: float) -> Navigation:
+    """Return a state less what the site itself has turned (Coriolis's 0.2 mm/s² of who walks is left out)."""
+    x, y, z = earth_rad_s
+    turned = multiply((1.0, -0.5 * x * dt_s, -0.5 * y * dt_s, -0.5 * z * dt_s), nav.wxyz_site_body)
+    return nav._replace(wxyz_site_body=normalise(turned))
 
 
 _DIAGONAL = (np.arange(SIZE), np.arange(SIZE))

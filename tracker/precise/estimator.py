@@ -7,7 +7,7 @@ import numpy as np
 
 from tracker.estimator import Innovation, Origin, Pose, Snapshot
 from tracker.fixes import FASTEST_M_S
-from tracker.geodesy import SiteFrame, gravity_m_s2
+from tracker.geodesy import SiteFrame, earth_rate_rad_s, gravity_m_s2
 from tracker.measurements import (
     CompassHeading,
     GpsFix,
@@ -72,6 +72,7 @@ class PreciseEstimator:
         self._name, self._uses_camera = name, uses_camera
         self._settings = settings or PreciseSettings()
         self._gravity = gravity_m_s2(origin.lat_deg, origin.h_ellipsoid_m)
+        self._earth_rad_s = earth_rate_rad_s(origin.lat_deg)
         self._lag_ns = round(self._settings.lag_s * 1e9)
         self._site, self._rig, self._compass, self._eyes_z_m = SiteFrame(origin), rig, compass, eyes_z_m
         self._memory = memory
@@ -82,7 +83,14 @@ class PreciseEstimator:
         self._timeline = Timeline()
         compass = deepcopy(self._compass)
         self._engine = Engine(
-            self._settings, self._site, self._rig, compass, self._gravity, self._eyes_z_m, self._memory
+            self._settings,
+            self._site,
+            self._rig,
+            compass,
+            self._gravity,
+            self._earth_rad_s,
+            self._eyes_z_m,
+            self._memory,
         )
         self._blend = self._new_blend()
         self._free = FreeIntegral(self._gravity, self._lag_ns)

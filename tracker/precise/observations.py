@@ -7,7 +7,7 @@ from math import atan2, hypot
 
 import numpy as np
 
-from tracker.geometry import log, rotate, wrap_rad, wxyz_from_matrix
+from tracker.geometry import conjugate, log, rotate, wrap_rad, wxyz_from_matrix
 from tracker.measurements import Matrix, Vector3
 from tracker.precise.error_model import BG, GPS_ERROR, MAGNETIC, SIZE, THETA, P, V, skew
 from tracker.precise.error_state import ErrorState
@@ -40,8 +40,9 @@ def velocity(state: ErrorState, v_site_m_s: Vector3) -> Observation:
 
 
 def turn_rate(state: ErrorState, gyro_rad_s: Vector3) -> Observation:
-    """A mean gyro reading of a body that does not turn: its bias."""
-    return np.array(gyro_rad_s) - state.biases.gyro_rad_s, [(BG, _I3)]
+    """A mean gyro reading of a body that does not turn but with the Earth: its bias."""
+    earth = rotate(conjugate(state.nav.wxyz_site_body), state.earth_rad_s)
+    return np.array(gyro_rad_s) - earth - state.biases.gyro_rad_s, [(BG, _I3)]
 
 
 def height(state: ErrorState, z_site_m: float) -> Observation:

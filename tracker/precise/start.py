@@ -3,7 +3,7 @@
 from math import hypot, pi, sqrt
 
 from tracker.geometry import wxyz_level_from_gravity
-from tracker.measurements import ImuSample
+from tracker.measurements import ImuSample, Vector3
 from tracker.precise.error_model import start_covariance
 from tracker.precise.error_state import ErrorState
 from tracker.precise.memory import Memory, recall
@@ -17,8 +17,11 @@ _START_NS = 500_000_000
 class Start:
     """Collects the first samples."""
 
-    def __init__(self, settings: PreciseSettings, gravity_m_s2: float, memory: Memory | None) -> None:
-        self._settings, self._gravity, self._memory = settings, gravity_m_s2, memory
+    def __init__(
+        self, settings: PreciseSettings, gravity_m_s2: float, earth_rad_s: Vector3, memory: Memory | None
+    ) -> None:
+        self._settings, self._memory = settings, memory
+        self._gravity, self._earth_rad_s = gravity_m_s2, earth_rad_s
         self._samples: list[ImuSample] = []
 
     def take(self, sample: ImuSample) -> ErrorState | None:
@@ -34,7 +37,7 @@ class Start:
         zero = (0.0, 0.0, 0.0)
         nav = Navigation(sample.t_ns, zero, zero, wxyz_level_from_gravity((x, y, z)))
         cov = start_covariance(self._settings, (1e3, 1e3, 1e3), 1.0, pi / sqrt(3.0))
-        state = ErrorState(self._settings, nav, Biases(), cov, self._gravity)
+        state = ErrorState(self._settings, nav, Biases(), cov, self._gravity, self._earth_rad_s)
         if self._memory is not None:
             recall(state, self._memory)
         return state

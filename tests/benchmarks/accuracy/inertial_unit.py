@@ -6,7 +6,7 @@ from math import radians
 import numpy as np
 
 from tests.benchmarks.accuracy.visitor import Visitor
-from tracker.geodesy import gravity_m_s2
+from tracker.geodesy import EARTH_RAD_S, gravity_m_s2
 from tracker.measurements import ImuSample, Matrix
 
 RATE_HZ = 250.0
@@ -23,7 +23,6 @@ SCALE, AXIS_RAD = 0.005, radians(0.3)
 SPIKE_EVERY_S, SPIKE_RAD_S, SPIKE_M_S2 = 40.0, 0.5, 5.0
 LOST_SHARE = 0.001
 LATE_S, JITTER_S = 0.002, 0.001
-EARTH_RAD_S = 7.292115e-5
 STREAM = 34
 
 

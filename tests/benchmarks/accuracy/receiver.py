@@ -23,6 +23,10 @@ AXES = np.array([1.0, 1.0, UP])
 ECHO_EVERY_S, ECHO_S = 45.0, (3.0, 14.0)
 ECHO_M, ECHO_M_S = 4.0, 0.22
 ECHO_STREAM = 34
+#: A claim that wavers: by a fifth, for some seconds, and in spells by half or double; what it is about does not.
+WAVER_SHARE, WAVER_S = 0.2, 5.0
+WAVER_EVERY_S, WAVER_SPELL_S, WAVER_BY = 60.0, (10.0, 40.0), 2.0
+WAVER_STREAM = 35
 
 
 def claimed_m() -> Matrix:
@@ -64,8 +68,29 @@ def echoes(rng: np.random.Generator, count: int) -> tuple[Matrix, Matrix]:
     return fixes, velocities
 
 
+def wavering(rng: np.random.Generator, count: int) -> Matrix:
+    """Return what a receiver's claims of `count` fixes are multiplied by, (n,)."""
+    keep = np.exp(-1.0 / (RATE_HZ * WAVER_S))
+    off, found = rng.normal(), np.zeros(count)
+    for number in range(count):
+        found[number] = off
+        off = keep * off + np.sqrt(1.0 - keep**2) * rng.normal()
+    factors = np.exp(WAVER_SHARE * found)
+    at_s = rng.exponential(WAVER_EVERY_S)
+    while (first := round(at_s * RATE_HZ)) < count:
+        end_s = at_s + rng.uniform(*WAVER_SPELL_S)
+        factors[first : round(end_s * RATE_HZ)] *= WAVER_BY ** rng.choice([-1.0, 1.0])
+        at_s = end_s + rng.exponential(WAVER_EVERY_S)
+    return np.asarray(factors)
+
+
 def receive(
-    walk: Visitor, understates: float, silent_s: tuple[float, float] | None, *, walls: bool = False
+    walk: Visitor,
+    understates: float,
+    silent_s: tuple[float, float] | None,
+    *,
+    walls: bool = False,
+    wavers: bool = False,
 ) -> Iterator[GpsFix | GpsVelocity]:
     """Yield fixes and velocities of the antenna.
 
@@ -74,6 +99,7 @@ def receive(
         understates: By how much the claimed sigma is too small.
         silent_s: From when to when, in seconds of the walk, nothing is received.
         walls: Whether some are near enough to throw back what is received.
+        wavers: Whether it claims now more and now less.
     """
     rng = np.random.default_rng([walk.settings.seed, STREAM])
     stamps, site = walk.stamps(RATE_HZ), SiteFrame(walk.settings.origin)
@@ -85,11 +111,14 @@ def receive(
         of_fixes, of_velocities = echoes(np.random.default_rng([walk.settings.seed, ECHO_STREAM]), len(stamps))
         p, v = p + of_fixes, v + of_velocities
     late_ns = (rng.uniform(*LATE_S, len(stamps)) * 1e9).astype(np.int64)
-    cov = tuple(np.diag((claimed_m() / understates) ** 2).ravel().tolist())
+    claims_m = np.tile(claimed_m() / understates, (len(stamps), 1))
+    if wavers:
+        claims_m *= wavering(np.random.default_rng([walk.settings.seed, WAVER_STREAM]), len(stamps))[:, None]
     for number, t in enumerate(stamps.tolist()):
         if silent_s is not None and silent_s[0] <= number / RATE_HZ < silent_s[1]:
             continue
         (x, y, z), (vx, vy, vz) = p[number].tolist(), v[number].tolist()
         arrived = t + int(late_ns[number])
+        cov = tuple(np.diag(claims_m[number] ** 2).ravel().tolist())
         yield GpsFix(t, arrived, *site.geodetic_from_site((x, y, z)), cov)
         yield GpsVelocity(t, arrived, (vx, vy, vz))

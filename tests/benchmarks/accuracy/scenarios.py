@@ -31,6 +31,8 @@ class Scenario:
     disturbance: bool = False
     walls: bool = False
     """Whether walls throw back to the receiver what is not for it to hear."""
+    wavers: bool = False
+    """Whether the receiver claims now more and now less, while its error is as ever."""
     taps: int = 0
     stands_here: bool = False
     knows_ground: bool = False
@@ -43,6 +45,7 @@ SCENARIOS = {
         Scenario("plain", "an ordinary visit"),
         Scenario("no-magnetometer", "the rig has none", magnetometer="absent"),
         Scenario("understated", "the receiver claims a sigma 1.5 times too small", understates=1.5),
+        Scenario("wavering", "the receiver claims now more and now less, its error as ever", wavers=True),
         Scenario("outage", "no GPS for 60 s while walking", outage=True),
         Scenario("walls", "walls throw echoes to the receiver, a few seconds at a time", walls=True),
         Scenario("disturbance", "iron turns the magnetic field for 60 s", disturbance=True),

@@ -24,7 +24,7 @@ SEEDS = tuple(range(101, 117))
 PAPER = tuple(f"{sensors}/paper" for sensors in SENSORS)
 RIVALS = ("gtsam/batch", "gtsam/fixed-lag", "filterpy/imm", "vqf", "imufusion")
 #: Where raw GPS stands beside the precise filter: what only it takes in (landmarks, the ground) changes nothing for others.
-COMPARED = ("plain", "no-magnetometer", "understated", "outage", "walls", "disturbance", "turned-start")
+COMPARED = ("plain", "no-magnetometer", "understated", "wavering", "outage", "walls", "disturbance", "turned-start")
 RIVALLED = ("plain", "outage")
 #: Where figures are missed without a camera.
 TOLD_IN = ("no-magnetometer", "three-taps", "stand-here")

@@ -152,6 +152,22 @@ def test_a_spell_beside_a_wall_lasts_seconds_and_is_metres_aside() -> None:
     assert velocities[beside].std(axis=0) == pytest.approx([receiver.ECHO_M_S] * 3, rel=0.15)
 
 
+def test_a_claim_that_wavers_changes_nothing_but_the_claim() -> None:
+    walk = walk_of(2)
+    usual, wavering = (list(receiver.receive(walk, 1.0, None, wavers=wavers)) for wavers in (False, True))
+    assert [m for m in usual if isinstance(m, GpsVelocity)] == [m for m in wavering if isinstance(m, GpsVelocity)]
+    pairs = [(a, b) for a, b in zip(usual, wavering, strict=True) if isinstance(a, GpsFix) and isinstance(b, GpsFix)]
+    assert all(replace(b, cov_enu_m2=a.cov_enu_m2) == a for a, b in pairs)
+    claims_m = np.sqrt([b.cov_enu_m2[0] for _, b in pairs])
+    assert 0.15 < np.std(np.log(claims_m)) < 0.6
+
+
+def test_a_claim_wavers_about_what_is_true_and_not_from_fix_to_fix() -> None:
+    factors = np.log(receiver.wavering(np.random.default_rng(3), 50_000))
+    assert np.median(factors) == pytest.approx(0.0, abs=0.05)
+    assert np.median(np.abs(np.diff(factors))) < 0.5 * np.median(np.abs(factors))
+
+
 def test_fixes_are_of_the_antenna(plain: Recording) -> None:
     """The mean of fix minus antenna over seeds is nearer to zero than the lever arm's height could hide."""
     site, walk = SiteFrame(AGORA_ORIGIN), plain.walk

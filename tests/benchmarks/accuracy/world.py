@@ -71,7 +71,7 @@ def record(
     measurements: list[Measurement] = [
         *measure(walk),
         *sense(walk, scenario.magnetometer, scenario.disturbance),
-        *receive(walk, scenario.understates, outage_s, walls=scenario.walls),
+        *receive(walk, scenario.understates, outage_s, walls=scenario.walls, wavers=scenario.wavers),
         *told,
         *(place.motions(walk) if camera else []),
         *walk.truth(),

@@ -5,7 +5,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from tracker.geometry import conjugate, exp, log, multiply, normalise, wxyz_from_yaw
+from tracker.geodesy import earth_rate_rad_s
+from tracker.geometry import conjugate, exp, log, multiply, normalise, rotate, wxyz_from_yaw
 from tracker.measurements import Matrix, Vector3
 from tracker.precise import observations
 from tracker.precise.error_model import BA, BG, SIZE, THETA, P, V, inertial_transition, skew, start_covariance
@@ -54,6 +55,24 @@ def test_transition_is_the_derivative_of_the_integral() -> None:
         moved.move(error)
         numeric = np.array(_difference(end, _advanced(moved.nav, moved.biases))) / 1e-5
         assert Phi[:9, column] == pytest.approx(numeric, abs=2e-3 if column >= 6 else 1e-6), column
+
+
+def test_who_turns_about_for_minutes_is_not_tilted_by_the_turning_earth() -> None:
+    """The gyroscope feels both turns, and no bias of it can be mistaken for the Earth's once the rig has faced all around."""
+    earth_rad_s, rate_rad_s, step_s = earth_rate_rad_s(37.9), 0.5, 0.02
+    off_rad = []
+    for known_rad_s in (earth_rad_s, (0.0, 0.0, 0.0)):
+        nav = Navigation(0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
+        cov = start_covariance(SETTINGS, (1.0, 1.0, 1.0), 1.0, 1.0)
+        state = ErrorState(SETTINGS, nav, Biases(), cov, G, known_rad_s)
+        for step in range(15_000):
+            x, y, z = rotate(conjugate(wxyz_from_yaw(rate_rad_s * (step + 0.5) * step_s)), earth_rad_s)
+            state.advance((step + 1) * 20_000_000, (x, y, z + rate_rad_s), (0.0, 0.0, G))
+        state.settle()
+        truth = wxyz_from_yaw(rate_rad_s * 15_000 * step_s)
+        off_rad.append(np.linalg.norm(log(multiply(truth, conjugate(state.nav.wxyz_site_body)))))
+    assert off_rad[0] < 2e-5
+    assert off_rad[1] == pytest.approx(300.0 * np.linalg.norm(earth_rad_s), rel=0.02)
 
 
 def test_what_is_relative_tells_nobody_which_way_all_of_it_lies() -> None:

@@ -12,7 +12,7 @@ from tests.benchmarks.accuracy.rivals.nodes import Node, Nodes
 from tests.benchmarks.accuracy.rivals.solution import State, covariances, solve, state_of
 from tests.benchmarks.accuracy.rivals.track import InertialTrack
 from tracker.estimator import NO_MOTION_MODEL, Origin, Pose
-from tracker.geodesy import gravity_m_s2
+from tracker.geodesy import earth_rate_rad_s, gravity_m_s2
 from tracker.geometry import conjugate, exp, log, multiply, normalise
 from tracker.measurements import ImuSample, Matrix, Measurement, Vector3
 from tracker.precise.navigation import Navigation
@@ -38,7 +38,9 @@ class Solved:
 def by_batch(measurements: Sequence[Measurement], origin: Origin, rig: Rig, ticks: Sequence[int]) -> list[Pose]:
     """Return the poses at ticks between the first node and the last inertial sample; none of a walk without a fix."""
     ordered = sorted(measurements, key=_measured)
-    believed = Believed(PreciseSettings(), rig, gravity_m_s2(origin.lat_deg, origin.h_ellipsoid_m))
+    believed = Believed(
+        PreciseSettings(), rig, gravity_m_s2(origin.lat_deg, origin.h_ellipsoid_m), earth_rate_rad_s(origin.lat_deg)
+    )
     nodes, _ = _gathered(0.0, ordered, origin, believed)
     if not any(node.fix is not None for node in nodes):
         return []

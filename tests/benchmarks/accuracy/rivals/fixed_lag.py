@@ -14,7 +14,7 @@ from tests.benchmarks.accuracy.rivals.nodes import Node, Nodes
 from tests.benchmarks.accuracy.rivals.online import follow
 from tests.benchmarks.accuracy.rivals.solution import State, covariance_of, solve, state_of
 from tracker.estimator import NO_MOTION_MODEL, Origin, Pose
-from tracker.geodesy import gravity_m_s2
+from tracker.geodesy import earth_rate_rad_s, gravity_m_s2
 from tracker.measurements import Matrix, Measurement
 from tracker.precise.settings import PreciseSettings
 from tracker.rig import Rig
@@ -33,7 +33,7 @@ class FixedLag:
         self._settings = PreciseSettings()
         self._gathered = Nodes(self._settings, origin)
         gravity = gravity_m_s2(origin.lat_deg, origin.h_ellipsoid_m)
-        self._believed = walk.Believed(self._settings, rig, gravity)
+        self._believed = walk.Believed(self._settings, rig, gravity, earth_rate_rad_s(origin.lat_deg))
         self._nodes: list[Node] = []
         self._has_fix = False
         self._motions: list[gtsam.PreintegratedCombinedMeasurements] = []

@@ -12,7 +12,7 @@ from tests.benchmarks.accuracy.rivals.alignment import Alignment
 from tests.benchmarks.accuracy.rivals.nodes import Node
 from tests.benchmarks.accuracy.rivals.track import InertialTrack
 from tracker.geometry import multiply, normalise, wxyz_from_yaw
-from tracker.measurements import ImuSample, Matrix
+from tracker.measurements import ImuSample, Matrix, Vector3
 from tracker.precise.settings import PreciseSettings
 from tracker.rig import Rig
 
@@ -61,6 +61,7 @@ class Believed:
     settings: PreciseSettings
     rig: Rig
     gravity_m_s2: float
+    earth_rad_s: Vector3
 
     @property
     def lever_body_m(self) -> Matrix:
@@ -91,6 +92,7 @@ def preintegrated(
     params.setAccelerometerCovariance(
         (settings.accel_noise_m_s2_sqrt_hz**2 + (ACCEL_SCALE * shaken_m_s) ** 2 / span_s) * unit
     )
+    params.setOmegaCoriolis(np.array(believed.earth_rad_s))
     params.setIntegrationCovariance(INTEGRATION_M2_S * unit)
     params.setBiasOmegaCovariance(settings.gyro_bias_walk_rad_s2_sqrt_hz**2 * unit)
     params.setBiasAccCovariance(settings.accel_bias_walk_m_s3_sqrt_hz**2 * unit)

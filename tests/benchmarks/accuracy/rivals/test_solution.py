@@ -7,7 +7,7 @@ import pytest
 from tests.benchmarks.accuracy.rivals import graph as walk
 from tests.benchmarks.accuracy.rivals.nodes import Node, Nodes
 from tests.benchmarks.accuracy.rivals.solution import covariance_of, covariances, solve, state_of
-from tracker.geodesy import gravity_m_s2
+from tracker.geodesy import earth_rate_rad_s, gravity_m_s2
 from tracker.precise.settings import PreciseSettings
 from tracker.simulate import Walk, WalkSettings, default_rig, simulate
 
@@ -19,7 +19,9 @@ def test_covariances_are_gtsams_turned_to_site() -> None:
     gathered, nodes = Nodes(settings, origin), list[Node]()
     for measurement in simulate(whole):
         nodes += gathered.add(measurement)
-    believed = walk.Believed(settings, whole.rig, gravity_m_s2(origin.lat_deg, origin.h_ellipsoid_m))
+    believed = walk.Believed(
+        settings, whole.rig, gravity_m_s2(origin.lat_deg, origin.h_ellipsoid_m), earth_rate_rad_s(origin.lat_deg)
+    )
     no_bias = gtsam.imuBias.ConstantBias()
     motions = [walk.motion_to(i, nodes, gathered.track, no_bias, believed) for i in range(1, len(nodes))]
     values = walk.start_values(nodes, gathered.track)
