@@ -101,3 +101,12 @@ def test_claims_beyond_all_measure_leave_the_filter_sound() -> None:
     assert np.all(np.isfinite(state.covariance))
     assert np.linalg.eigvalsh(state.covariance)[0] > -1e-9
     assert np.hypot(*state.nav.p_m[:2]) < 10.0
+
+
+def test_a_receiver_that_claims_nothing_is_believed_as_the_settings_say() -> None:
+    hypotheses, receiver = Hypotheses(new_filter()), Receiver(SETTINGS, SITE, REST)
+    hypotheses.best.advance(S, REST, (0.0, 0.0, hypotheses.best._gravity))
+    receiver.take_fix(hypotheses, GpsFix(S, S, *SITE.geodetic_from_site((0.0, 0.0, 0.0)), (0.0,) * 9), REST)
+    assert hypotheses.best.gps_sigma_m == pytest.approx(
+        np.sqrt(SETTINGS.gps_inflation) * np.array(SETTINGS.gps_sigma_m)
+    )
