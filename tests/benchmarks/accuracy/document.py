@@ -44,7 +44,7 @@ _LEAD = (
 _METHOD = (
     "Every walk lasts 300 s. The receiver's error has two time scales (20 s and 400 s) and its velocity now and then is "
     "half a metre a second off; the inertial unit has scales, leaning axes, biases that drift and spikes; the "
-    "magnetometer has iron about it. Walls with echoes were added when a recorded walk had shown what "
+    "magnetometer has iron about it. Walls with echoes, and claims that waver, were added when a recorded walk had shown what "
     "they do. None of these models is that of a filter here, and the simulator shares nothing with "
     "`agora simulate`. Seeds {first} to {last} were never used for tuning; twice a choice was made again, on other seeds, after "
     "these had been seen. The camera is one without pictures: corners of the model, followed with the errors that were "
