@@ -18,6 +18,7 @@ import pytest
 from cryptography import x509
 from cryptography.hazmat.primitives import hashes, serialization
 from cryptography.hazmat.primitives.asymmetric import ec
+from websockets.sync.connection import Connection
 
 from assets.site import load_site
 from server.configuration import Configuration
@@ -63,6 +64,18 @@ def handshake(server: ssl.SSLContext, client: ssl.SSLContext, name: str) -> None
 
 def obey(request: ControlRequest) -> ControlReply:
     return ControlReply(request.request_id, ok=True)
+
+
+def viewer_over_tls(server: WebServer, device: ssl.SSLContext) -> Connection:
+    """Connect as a viewer; once more where nothing is answered.
+
+    This client reads and writes in two threads, and in CPython these race within one TLS connection
+    (github.com/python/cpython/issues/143756): now and then the answer to a first request is lost.
+    """
+    try:
+        return viewer(server, ssl=device, open_timeout=5.0)
+    except TimeoutError:
+        return viewer(server, ssl=device)
 
 
 def shown_by(tls: Tls) -> ssl.SSLContext:
@@ -178,7 +191,7 @@ def test_pages_and_sockets_over_tls(secure: tuple[WebServer, LocalAuthority]) ->
     assert made.status_code == 201
     with RigLink(server.rig_url("walk"), token("rig", "walk"), obey, authority.tls.own_pem()) as link:
         until(lambda: link.connected)
-        with viewer(server, ssl=device) as watching:
+        with viewer_over_tls(server, device) as watching:
             for number in range(1, 11):  # each goes at once, whatever went before
                 link.send_frame(frame(number))
                 assert bytes_of(watching) == frame(number)
