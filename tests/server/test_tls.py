@@ -70,7 +70,7 @@ def viewer_over_tls(server: WebServer, device: ssl.SSLContext) -> Connection:
     """Connect as a viewer; once more where nothing is answered.
 
     This client reads and writes in two threads, and in CPython these race within one TLS connection
-    (github.com/python/cpython/issues/143756): now and then the answer to a first request is lost.
+    (github.com/python/cpython/issues/143756): an answer that never comes is taken for that, once.
     """
     try:
         return viewer(server, ssl=device, open_timeout=5.0)

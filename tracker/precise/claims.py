@@ -5,13 +5,26 @@ middle of its last claims; one that is worse than that, of a moment with fewer s
 """
 
 from collections import deque
+from math import sqrt
 
 import numpy as np
 
-from tracker.measurements import Matrix, Vector3
+from tracker.fixes import variance_m2
+from tracker.measurements import GpsFix, Matrix, Vector3
+from tracker.precise.settings import PreciseSettings
 
 #: So many claims have a middle: two fixes that are worse than the others leave it where it was.
 _LAST = 5
+#: Who claims to be off by more than this tells nothing, however much more.
+_NOTHING_M = 1000.0
+
+
+def claimed_m(fix: GpsFix, settings: PreciseSettings) -> Vector3:
+    """Return what a receiver claims of a fix, as far as it is believed: standard deviations, east, north, up."""
+    x, y, z = settings.gps_sigma_m
+    var = variance_m2(fix, settings.gps_floor_m, (x * x, y * y, z * z))
+    sx, sy, sz = (min(sqrt(v * settings.gps_inflation), _NOTHING_M) for v in var)
+    return sx, sy, sz
 
 
 class Claims:

@@ -1,14 +1,13 @@
 """What the filter makes of a receiver: how far its fixes and velocities are believed, and who is right where they disagree."""
 
-from math import hypot, sqrt
+from math import hypot
 
 import numpy as np
 
-from tracker.fixes import variance_m2
 from tracker.geodesy import SiteFrame
 from tracker.measurements import GpsFix, GpsVelocity, Vector3
 from tracker.precise import observations, receiver_error
-from tracker.precise.claims import Claims
+from tracker.precise.claims import Claims, claimed_m
 from tracker.precise.doubt import Doubt
 from tracker.precise.error_state import ErrorState
 from tracker.precise.evenness import Evenness
@@ -21,8 +20,6 @@ from tracker.precise.update import Correction
 
 #: Who has been so far from where the receiver was first has walked: then motion tells north.
 _WALKED_M = 6.0
-#: Who claims to be off by more than this tells nothing, however much more.
-_NOTHING_M = 1000.0
 #: A receiver that was silent for longer than its usual second leaves the filter blind.
 _BLIND_NS = 2_500_000_000
 
@@ -60,7 +57,8 @@ class Receiver:
         for filter_ in hypotheses.filters:
             filter_.place(self._place_of(fix), forget_receiver=False)
             if self._memory is not None:
-                receiver_error.restate(filter_, self._sigma_of(fix), forgotten(self._memory, fix.t_ns, self._settings))
+                unknown = forgotten(self._memory, fix.t_ns, self._settings)
+                receiver_error.restate(filter_, claimed_m(fix, self._settings), unknown)
 
     def take_fix(self, hypotheses: Hypotheses, fix: GpsFix, walked_m: Vector3) -> None:
         """Correct by a fix; one that is refused again and again is believed after all.
@@ -71,7 +69,7 @@ class Receiver:
             walked_m: The way so far in site axes, corrections left out.
         """
         p = self._place_of(fix)
-        sigma, noisier_m2 = self._claims.take(self._sigma_of(fix))
+        sigma, noisier_m2 = self._claims.take(claimed_m(fix, self._settings))
         for filter_ in hypotheses.filters:
             receiver_error.restate(filter_, sigma)
         if self._evenness.take(fix.t_ns, p, sigma):
@@ -105,13 +103,6 @@ class Receiver:
 
     def _place_of(self, fix: GpsFix) -> Vector3:
         return self._site.site_from_geodetic(fix.lat_deg, fix.lon_deg, fix.h_ellipsoid_m)
-
-    def _sigma_of(self, fix: GpsFix) -> Vector3:
-        settings = self._settings
-        x, y, z = settings.gps_sigma_m
-        var = variance_m2(fix, settings.gps_floor_m, (x * x, y * y, z * z))
-        sx, sy, sz = (min(sqrt(v * settings.gps_inflation), _NOTHING_M) for v in var)
-        return sx, sy, sz
 
     def _note_way(self, p_site_m: Vector3) -> None:
         self._first_fix_m = self._first_fix_m or p_site_m

@@ -2,14 +2,13 @@
 
 from bisect import insort
 from dataclasses import dataclass
-from math import isfinite, sqrt
+from math import isfinite
 
 from tests.benchmarks.accuracy.rivals.track import InertialTrack
 from tracker.estimator import Origin
-from tracker.fixes import variance_m2
 from tracker.geodesy import SiteFrame, gravity_m_s2
 from tracker.measurements import GpsFix, GpsVelocity, ImuSample, Matrix, Measurement, Vector3
-from tracker.precise.claims import Claims
+from tracker.precise.claims import Claims, claimed_m
 from tracker.precise.settings import PreciseSettings
 
 #: Nodes are at least so far apart: a receiver of 18 Hz says little more than one of 2 Hz, its errors being the same.
@@ -101,11 +100,7 @@ class Nodes:
         return node
 
     def _fix(self, fix: GpsFix) -> Fix:
-        settings = self._settings
-        x, y, z = settings.gps_sigma_m
-        var = variance_m2(fix, settings.gps_floor_m, (x * x, y * y, z * z))
-        sx, sy, sz = (sqrt(v * settings.gps_inflation) for v in var)
-        usual, noisier_m2 = self._claims.take((sx, sy, sz))
+        usual, noisier_m2 = self._claims.take(claimed_m(fix, self._settings))
         return Fix(self._site.site_from_geodetic(fix.lat_deg, fix.lon_deg, fix.h_ellipsoid_m), usual, noisier_m2)
 
 
